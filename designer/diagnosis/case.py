@@ -125,7 +125,7 @@ def _too_few(effect: Effect, measured: Measured) -> str:
     if effect.starts_from is None:
         return ""
     seen = measured.without_readings(heldout_rows(measured.n_rows))
-    starts = effect.starts_from(measured, np.hstack([seen.length_m, seen.tension_N]))
+    starts = effect.starts_from(measured, seen.readings)
     return "" if starts else "needs more rows"
 
 

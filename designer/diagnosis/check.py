@@ -219,7 +219,7 @@ def _check(
     }
     unknown = sum(len(effect.parameters) for effect in bare.given)
     # A check holds no rows out: as many readings as unknowns are enough.
-    if unknown and without.free_readings(np.isfinite(without.readings)) > unknown:
+    if unknown and without.free_readings(np.isfinite(without.measured.readings)) > unknown:
         progress("what is unknown, fitted without the effects")
         problems["fitted"] = (without, fit(without, bare.given, everywhere).settings)
     held_rows = {name: _held(*model) for name, model in problems.items()}
@@ -250,7 +250,7 @@ def _held(problem: Problem, settings: tuple[Setting, ...]) -> BoolArray:
 def _model(
     problem: Problem, settings: tuple[Setting, ...], mask: BoolArray, compared: BoolArray
 ) -> Model:
-    residual = problem.readings - problem.predicted(settings).stacked
+    residual = problem.measured.readings - problem.predicted(settings).stacked
     length_m, tension_N = np.hsplit(residual, 2)
     has_lengths = np.isfinite(problem.measured.length_m).all(axis=1)
     return Model(

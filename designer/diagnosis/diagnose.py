@@ -24,6 +24,7 @@ from designer.diagnosis.problem import Problem
 from designer.diagnosis.propose import Proposal, propose
 from designer.diagnosis.readings import imbalance_of
 from designer.diagnosis.result import Diagnosis, Estimate, Finding
+from designer.diagnosis.search import without
 from designer.diagnosis.statistics import heldout_rows, without_outliers
 from designer.diagnosis.structure import covariates_of, smooth_correction, whereabouts
 from designer.effects.effect import Effect
@@ -98,16 +99,17 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     outcome, gains = keep_what_helps(outcome, problem, heldout, progress)
     # What is told of the model shall not depend on the path that the search took to it.
     problem = replace(problem, predict=predict.at(measured))
-    search = outcome.search
-    base = fit(outcome.problem, case.given, ~heldout) if search.found else search.fit
-    before, after = problem.residual(base.settings), problem.residual(search.fit.settings)
-    predicted = problem.predicted(search.fit.settings)
+    base = outcome.fit
+    if outcome.found:
+        base = fit(outcome.searcher.problem, case.given, ~heldout)
+    first, last = base.settings, outcome.fit.settings
+    before, after = problem.residual(first), problem.residual(last)
+    predicted = problem.predicted(last)
     if isinstance(problem.predict, FreePredictor):
-        poses = problem.predict.poses(search.fit.settings, problem.noise)
-        measured = replace(measured, poses=poses)
-    compared = heldout & with_sound_lengths(problem, search.fit.settings)
-    covariates = covariates_of(measured, problem.surroundings(search.fit.settings))
-    findings = tuple(_finding(outcome, e, gains[e.key]) for e in search.found)
+        measured = replace(measured, poses=problem.predict.poses(last, problem.noise))
+    compared = heldout & with_sound_lengths(problem, last)
+    covariates = covariates_of(measured, problem.surroundings(last))
+    findings = tuple(_finding(outcome, e, gains[e.key]) for e in outcome.found)
     trend = correction = None
     if outcome.structure.present:
         name = outcome.structure.present[0].name
@@ -120,12 +122,12 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
         noise=problem.noise,
         heldout=heldout,
         findings=findings,
-        given=tuple(s for s in search.fit.settings if s.effect in case.given),
+        given=tuple(s for s in last if s.effect in case.given),
         withdrawn=outcome.withdrawn,
         skipped=case.skipped,
-        steps=search.steps,
+        steps=outcome.steps,
         stages=_stages(outcome, problem, base, heldout),
-        structure_before=structure_left(problem, base.settings, np.ones_like(heldout)),
+        structure_before=structure_left(problem, first, np.ones_like(heldout)),
         structure_after=outcome.structure,
         residual_before=before,
         residual_after=after,
@@ -135,11 +137,11 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
         left_in=trend,
         correction=correction,
         proposals=_proposals(case, outcome, findings),
-        doubts=tuple(_doubts(case, search.fit)),
-        foretold_before=foretell(problem, base.settings, compared),
-        foretold_after=foretell(problem, search.fit.settings, compared),
+        doubts=tuple(_doubts(case, outcome.fit)),
+        foretold_before=foretell(problem, first, compared),
+        foretold_after=foretell(problem, last, compared),
         not_tried=progress.left_out,
-        imbalance=imbalance_of(problem.predict.built(search.fit.settings), measured),
+        imbalance=imbalance_of(problem.predict.built(last), measured),
     )
 
 
@@ -157,7 +159,7 @@ def _with_settled_noise(case: Case, rows: BoolArray, progress: Pace) -> Outcome:
         # holds what neighbours do not share, and is taken again from the better model.
         if noise.source == "declared" or not measured.settled:
             break
-        better = rescaled(noise, case.measurements, problem.residual(outcome.search.fit.settings))
+        better = rescaled(noise, case.measurements, problem.residual(outcome.fit.settings))
         change = max(
             abs(better.length_m / noise.length_m - 1), abs(better.tension_N / noise.tension_N - 1)
         )
@@ -172,9 +174,8 @@ def _with_settled_noise(case: Case, rows: BoolArray, progress: Pace) -> Outcome:
 
 
 def _finding(outcome: Outcome, effect: Effect, gain: Gain) -> Finding:
-    search, searcher = outcome.search, outcome.searcher
-    rivals = searcher.rivals(search.found, effect, search.fit, search.steps)
-    estimate = _estimates(search.fit)[effect.key]
+    rivals = outcome.searcher.rivals(outcome.found, effect, outcome.fit, outcome.steps)
+    estimate = _estimates(outcome.fit)[effect.key]
     is_near = all(
         abs(estimate[p.name].value - p.neutral) < 2 * estimate[p.name].std
         for p in effect.parameters
@@ -218,7 +219,7 @@ def _estimates(model: Fit) -> dict[str, dict[str, Estimate]]:
 
 def _stages(outcome: Outcome, problem: Problem, base: Fit, heldout: BoolArray) -> tuple[Stage, ...]:
     """Errors as declared, then with the found effects one after the other."""
-    effects, last = outcome.search.found, outcome.search.fit
+    effects, last = outcome.found, outcome.fit
     label = "as declared, unknowns fitted" if base.settings else "as declared"
     sound = ~np.isnan(without_outliers(problem.residual(last.settings)))
     stages = [stage(problem, label, base.settings, heldout, sound)]
@@ -234,15 +235,14 @@ def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tup
         return ()
     region = case.study.workspace.region if case.study.workspace else None
     by_key = {effect.key: effect for effect in case.candidates}
-    problem = replace(outcome.problem, measured=case.measured)
-    search = outcome.search
+    problem = replace(outcome.searcher.problem, measured=case.measured)
     answer = []
     for finding in findings:
         key = finding.effect.key
-        rest = [effect for effect in search.found if effect.key != key]
+        rest = without(outcome.found, key)
         for rival in finding.rivals[:2]:  # the best
-            swapped = outcome.searcher.fit([*rest, by_key[rival]], search.fit)
-            pair = (search.fit.settings, swapped.settings)
+            swapped = outcome.searcher.fit([*rest, by_key[rival]], outcome.fit)
+            pair = (outcome.fit.settings, swapped.settings)
             answer.append(propose(problem, region, *pair, (key, rival)))
     return tuple(answer)
 

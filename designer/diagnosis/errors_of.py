@@ -19,6 +19,7 @@ from designer.diagnosis.statistics import block_of, is_outlier, rms, without_out
 from designer.effects.effect import Setting
 from designer.model.robot import Poses
 from designer.statics.forward import solve_forward
+from designer.statics.task import part_of
 
 _DRAWS = 400
 """Of the bootstrap: the ends of a 95 % interval scatter by a thirtieth of its width."""
@@ -203,10 +204,7 @@ def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -
     true = problem.predict.true_readings(settings, problem.noise)
     built = problem.predict.built(settings)
     force = added_force_N(built, measured)
-    rotation = measured.poses.rotation
-    poses = Poses(
-        measured.poses.position_m[rows], rotation if rotation.ndim == 2 else rotation[rows]
-    )
+    poses = part_of(measured.poses, rows)
     forward_statics = solve_forward(
         built.robot, built.cable, true.length_m[rows], poses, None if force is None else force[rows]
     )

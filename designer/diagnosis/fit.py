@@ -127,7 +127,7 @@ def fit(
         Whether known effects that have several valleys start in each of them again: the valley
         that an effect was found in alone need not be the one that it has beside another.
     """
-    is_used = rows[:, None] & ~np.isnan(problem.readings)
+    is_used = rows[:, None] & ~np.isnan(problem.measured.readings)
     if not effects:
         loss = float(huber(problem.residual(())[is_used]).sum())
         return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(is_used))

@@ -10,17 +10,16 @@ linear in the rows.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import HUBER, huber, jacobian, starting_vector
-from designer.diagnosis.problem import Predictor, Problem
+from designer.diagnosis.problem import Kind, Predictor, Problem, kind_of
 from designer.diagnosis.readings import readings_of
 from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.effects.effect import Effect, Readings, Setting, frame_size_m
-from designer.effects.registry import SHIPPED, KnownEffects
 from designer.model.machine import Machine
 from designer.model.measured_data import EVEN, Measured, Noise
 from designer.model.region import Region
@@ -40,23 +39,16 @@ _UNHELD = 1e9
 """What is left of a reading where the model cannot hold the pose: worse than any error."""
 
 
+@dataclass(eq=False)
 class FreePredictor(Predictor):
     """Predicts readings of rows without poses, each where it suits its own readings best."""
 
-    def __init__(
-        self,
-        machine: Machine,
-        measured: Measured,
-        fixed: Sequence[Setting] = (),
-        effects: KnownEffects = SHIPPED,
-    ) -> None:
-        super().__init__(machine, measured, fixed, effects)
-        self._near: dict[tuple[object, ...], tuple[Poses, FloatArray]] = {}
+    _near: dict[Kind, tuple[Poses, FloatArray]] = field(init=False, default_factory=dict)
 
     @property
     def row_unknowns(self) -> int:
         """The pose and the internal forces: as many as cables."""
-        return self._machine.robot.n_cables
+        return self.machine.robot.n_cables
 
     def __call__(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
         """Return what the sensors would show with these effects, in the poses that suit them."""
@@ -75,13 +67,13 @@ class FreePredictor(Predictor):
     def poses(self, settings: Sequence[Setting], noise: Noise) -> Poses:
         """Return the poses that suit the readings with these effects."""
         self._nearest(settings, noise)
-        return self._measured.poses
+        return self.measured.poses
 
     def _nearest(self, settings: Sequence[Setting], noise: Noise) -> tuple[Readings, Readings]:
         """Put each row where its robust loss is least; Gauss-Newton, with slopes that are kept."""
-        kind = (noise, *(setting.effect.key for setting in settings))
+        kind = kind_of(settings, noise)
         start = self._near.get(kind, self._near.get((noise,)))
-        poses, slopes = start if start else (self._measured.poses, None)
+        poses, slopes = start if start else (self.measured.poses, None)
         answer, residual = self._left_at(poses, settings, noise)
         share = np.ones(len(residual))
         for _ in range(6):  # turns at most
@@ -93,7 +85,7 @@ class FreePredictor(Predictor):
                 if np.all(np.abs(rest).max(axis=1) < still):
                     self._near[kind] = poses, slopes
                     return _further(answer, rest, noise)
-                trial = moved_poses(self._machine.robot, poses, step)
+                trial = moved_poses(self.machine.robot, poses, step)
                 answer, residual_trial = self._left_at(trial, settings, noise)
                 closer = _loss(residual_trial) <= _loss(residual)
                 poses = _either(closer, trial, poses)
@@ -109,25 +101,23 @@ class FreePredictor(Predictor):
         self, poses: Poses, settings: Sequence[Setting], noise: Noise
     ) -> tuple[tuple[Readings, Readings], FloatArray]:
         """Return true and shown readings in poses, and what is left in units of noise."""
-        measured = self._measured = replace(self._measured, poses=poses)
+        measured = self.measured = replace(self.measured, poses=poses)
         if self.spare_cables:
             answer = self._with_forces(settings, noise)
         else:
             true, _ = self._physical(settings, noise)
             answer = true, self._shown(true, settings)
         displayed = answer[1]
-        length = (measured.length_m - displayed.length_m) / noise.length_m
-        tension = (measured.tension_N - displayed.tension_N) / noise.tension_N
-        residual = np.hstack([length, tension])
-        is_read = np.isfinite(np.hstack([measured.length_m, measured.tension_N]))
+        sigma = noise.of_channels(self.machine.robot.n_cables)
+        residual = (measured.readings - displayed.stacked) / sigma
         residual = np.where(np.isnan(residual), _UNHELD, residual)
-        return answer, np.where(is_read, residual, 0.0)
+        return answer, np.where(np.isfinite(measured.readings), residual, 0.0)
 
     def _slopes_at(self, poses: Poses, settings: Sequence[Setting], noise: Noise) -> FloatArray:
         """Return how much less is left for a step of each degree of freedom (rows, …, dof)."""
-        robot = self._machine.robot
+        robot = self.machine.robot
         residual = self._left_at(poses, settings, noise)[1]
-        step_m = _STEP * frame_size_m(self._machine)
+        step_m = _STEP * frame_size_m(self.machine)
         slopes = np.empty((*residual.shape, robot.degrees_of_freedom))
         for k in range(robot.degrees_of_freedom):
             step = np.zeros((len(residual), robot.degrees_of_freedom))
@@ -156,13 +146,13 @@ def first_poses(machine: Machine, measured: Measured, region: Region) -> Poses:
     stacked = readings_of(machine, Poses.at(places)).stacked
     scale = np.maximum(np.nanstd(stacked, axis=0), 1e-12)
     unlike = np.where(np.isnan(stacked), np.inf, 0.0).sum(axis=1)  # what the machine cannot hold
-    read = np.hstack([measured.length_m, measured.tension_N])
     nearest = [
-        int(np.argmin(np.nansum(((row - stacked) / scale) ** 2, axis=1) + unlike)) for row in read
+        int(np.argmin(np.nansum(((row - stacked) / scale) ** 2, axis=1) + unlike))
+        for row in measured.readings
     ]
     rotation = np.eye(3)
     if not machine.robot.is_point_mass:
-        rotation = np.tile(rotation, (len(read), 1, 1))
+        rotation = np.tile(rotation, (measured.n_rows, 1, 1))
     return Poses(places[nearest], rotation)
 
 
@@ -214,9 +204,8 @@ def _further(
 ) -> tuple[Readings, Readings]:
     """Return readings after a last short step, which takes ``rest`` off what is left."""
     true, displayed = answer
-    length, tension = np.hsplit(rest, 2)
-    length, tension = noise.length_m * length, noise.tension_N * tension
-    return true, Readings(displayed.length_m + length, displayed.tension_N + tension)
+    sigma = noise.of_channels(displayed.length_m.shape[1])
+    return true, Readings(*np.hsplit(displayed.stacked + sigma * rest, 2))
 
 
 def _loss(values: FloatArray) -> FloatArray:

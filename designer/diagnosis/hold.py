@@ -9,8 +9,9 @@ what drifts. What is left must help on rows that no fit has seen: the only use t
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from designer.diagnosis.events import find_common, find_events, find_swapped
 from designer.diagnosis.fit import Fit, jacobian, with_places
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Reason, Withdrawn
-from designer.diagnosis.search import Search, Searcher
+from designer.diagnosis.search import Searcher, Step, without
 from designer.diagnosis.statistics import SIGNIFICANCE, block_of, without_outliers
 from designer.diagnosis.structure import (
     Structure,
@@ -35,13 +36,7 @@ _MOST_CARRIERS = 4
 """Covariates that are tried: weaker ones go with these."""
 
 
-def drifting(
-    problem: Problem,
-    model: Fit,
-    effects: Sequence[Effect],
-    structure: Structure,
-    rows: BoolArray,
-) -> Withdrawn | None:
+def drifting(outcome: Outcome) -> Withdrawn | None:
     r"""Return the found effect that drifts most with a covariate that the residual goes with.
 
     Each effect is allowed to change in proportion to the covariate, all others being fitted anew.
@@ -52,7 +47,8 @@ def drifting(
     """
     from scipy.stats import chi2
 
-    keys = {effect.key for effect in effects}
+    problem, model, structure = outcome.problem, outcome.fit, outcome.structure
+    rows, keys = outcome.rows, {effect.key for effect in outcome.found}
     limit = 4.0 * np.sqrt(model.variance)  # so that no outlier makes a drift
     unclipped = problem.residual(model.settings)
     residual = np.clip(unclipped, -limit, limit)
@@ -68,7 +64,7 @@ def drifting(
         if setting.effect.key not in keys:
             continue
         # What the effect takes off the sum of squares that the others, fitted anew, leave.
-        rest = [s for s in model.settings if s.effect.key != setting.effect.key]
+        rest = [s for s in model.settings if s is not setting]
         change = problem.residual(rest)[is_used] - unclipped[is_used]
         other_slopes = _orthonormal(np.delete(slopes, columns, axis=-1)[is_used])
         size = np.sqrt(max(np.sum(beside(other_slopes, change) ** 2), model.variance))
@@ -133,35 +129,57 @@ _LEAST = 0.01
 """Share of the held-out mean square below which a gain is of no use to anyone."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Outcome:
-    """A search whose findings hold.
+    """A search, and what of it holds.
 
     Parameters
     ----------
-    problem, searcher
-        What was searched; the searcher knows no effect that was withdrawn.
-    search : Search
-        All its rounds, with the effects that hold and their joint fit.
+    searcher : Searcher
+        Knows no effect that was withdrawn while it searched.
+    problem : Problem
+        What the tests may see: what was searched, or all readings.
+    rows : array (n_rows,) of bool
+        Rows in which structure is tested.
+    steps : tuple of Step
+        The search, round by round.
+    fit : Fit
+        Joint fit of the effects that hold.
+    found : tuple of Effect
+        Those, without what was unknown from the start.
     withdrawn : tuple of Withdrawn
         What was found and does not hold.
-    structure : Structure
-        Test of what is left.
     """
 
-    problem: Problem
     searcher: Searcher
-    search: Search
-    withdrawn: tuple[Withdrawn, ...]
-    structure: Structure
+    problem: Problem
+    rows: BoolArray
+    steps: tuple[Step, ...]
+    fit: Fit
+    found: tuple[Effect, ...]
+    withdrawn: tuple[Withdrawn, ...] = ()
 
-    def without(self, gone: Withdrawn, progress: Pace) -> Outcome:
-        """Withdraw an effect, and fit the rest anew."""
+    @cached_property
+    def structure(self) -> Structure:
+        """Test of what is left."""
+        return structure_left(self.problem, self.fit.settings, self.rows)
+
+    def fit_without(self, effect: Effect) -> Fit:
+        """Fit the other effects anew."""
+        return self.searcher.fit(without(self.found, effect.key), self.fit)
+
+    def holding(
+        self, tests: Sequence[Callable[[Outcome], Withdrawn | None]], progress: Pace
+    ) -> Outcome:
+        """Withdraw what the first test objects to, fit the rest anew, until all are content."""
+        gone = next((gone for test in tests if (gone := test(self))), None)
+        if gone is None:
+            return self
         progress(f"{gone.effect} withdrawn")
-        effects = without(self.search.found, gone.effect)
-        model = self.searcher.fit(effects, self.search.fit, thorough=True)
-        search = replace(self.search, fit=model, found=tuple(effects))
-        return replace(self, search=search, withdrawn=(*self.withdrawn, gone))
+        rest = tuple(without(self.found, gone.effect))
+        model = self.searcher.fit(rest, self.fit, thorough=True)
+        less = replace(self, fit=model, found=rest, withdrawn=(*self.withdrawn, gone))
+        return less.holding(tests, progress)
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,20 +210,15 @@ def search_and_hold(
     searcher = Searcher(problem, candidates, effects, rows, progress)
     unsearched = searcher.fit([], thorough=True)
     if find_swapped(*_residual_and_predicted(problem, unsearched.settings, rows)):
-        structure = structure_left(problem, unsearched.settings, rows)
-        return Outcome(problem, searcher, Search((), unsearched, ()), (), structure)
+        return Outcome(searcher, problem, rows, (), unsearched, ())
     search = searcher.run()
-    structure = structure_left(problem, search.fit.settings, rows)
     # The best of what would still earn its place, but with values that nobody would believe.
     last = [t for t in (search.steps[-1].trials if search.steps else ()) if t.earns_its_place]
     wild = [gone for t in last if (gone := implausible(t.fit, [t.effect]))][:1]
-    outcome = Outcome(problem, searcher, search, tuple(wild), structure)
-    while gone := _loose(outcome, rows):
-        outcome = outcome.without(gone, progress)
-        structure = structure_left(problem, outcome.search.fit.settings, rows)
-        outcome = replace(outcome, structure=structure)
+    outcome = Outcome(searcher, problem, rows, search.steps, search.fit, search.found, tuple(wild))
+    outcome = outcome.holding((_implausible, _bent), progress)
     rest = without(candidates, *(withdrawal.effect for withdrawal in outcome.withdrawn))
-    return replace(outcome, searcher=Searcher(problem, rest, effects, rows, progress))
+    return replace(outcome, searcher=replace(searcher, candidates=rest))
 
 
 def keep_what_helps(
@@ -229,32 +242,23 @@ def keep_what_helps(
     dict of str to Gain
         Gain of each effect that is kept.
     """
-    while True:
-        effects, model = outcome.search.found, outcome.search.fit
-        gains, structure = dict[str, Gain](), outcome.structure
-        gone = implausible(model, effects) or _faint(model, effects)
-        if gone is None:
-            residual = problem.residual(model.settings)[heldout]
-            for effect in effects:  # the others fitted anew without it
-                rest = outcome.searcher.fit(without(effects, effect.key), model)
-                gains[effect.key] = _gain(
-                    problem.residual(rest.settings)[heldout], residual, heldout
-                )
-            least = min(
-                gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std, default=""
-            )
-            if not all(gain.is_clear for gain in gains.values()):
-                gain = gains[least]
-                gone = Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
-        if gone is None:
-            structure = structure_left(problem, model.settings, np.ones_like(heldout))
-            # What begins at a time is no step if what is left goes with time all the same.
-            steps = [effect.key for effect in effects if effect.starts_from is not None]
-            if steps and any(carrier.is_order for carrier in structure.present):
-                gone = Withdrawn(steps[0], reason=Reason.NO_STEP)
-        if gone is None:
-            return replace(outcome, structure=structure), gains
-        outcome = outcome.without(gone, progress)
+    gains: dict[str, Gain] = {}
+
+    def unseen(outcome: Outcome) -> Withdrawn | None:
+        gains.clear()
+        residual = problem.residual(outcome.fit.settings)[heldout]
+        for effect in outcome.found:
+            before = problem.residual(outcome.fit_without(effect).settings)[heldout]
+            gains[effect.key] = _gain(before, residual, heldout)
+        if all(gain.is_clear for gain in gains.values()):
+            return None
+        least = min(gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std)
+        gain = gains[least]
+        return Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
+
+    outcome = replace(outcome, problem=problem, rows=np.ones_like(heldout))
+    tests = (_implausible, _faint, unseen, _no_step)
+    return outcome.holding(tests, progress), gains
 
 
 def structure_left(problem: Problem, settings: Sequence[Setting], rows: BoolArray) -> Structure:
@@ -279,24 +283,28 @@ def _residual_and_predicted(
     return problem.residual(settings)[rows], in_noise[rows]
 
 
-def _loose(outcome: Outcome, rows: BoolArray) -> Withdrawn | None:
-    """Return the found effect that holds least; None where all hold."""
-    problem, structure = outcome.problem, outcome.structure
-    effects, model = outcome.search.found, outcome.search.fit
-    if not effects:
+def _implausible(outcome: Outcome) -> Withdrawn | None:
+    return implausible(outcome.fit, outcome.found)
+
+
+def _bent(outcome: Outcome) -> Withdrawn | None:
+    """Return the found effect that is most likely bent to fit what else is left; None for none."""
+    structure, model = outcome.structure, outcome.fit
+    if not outcome.found or not (structure.events or structure.may_bend):
         return None
-    gone = implausible(model, effects)
-    if gone is not None or not (structure.events or structure.may_bend):
-        return gone
-    unexplained = model.loss - model.n_data
-    gains = {
-        effect.key: outcome.searcher.fit(without(effects, effect.key), model).loss - model.loss
-        for effect in effects
-    }
-    least = min(gains, key=gains.__getitem__)
-    if gains[least] < _SMALL * unexplained:
+    losses = {effect.key: outcome.fit_without(effect).loss for effect in outcome.found}
+    least = min(losses, key=losses.__getitem__)
+    if losses[least] - model.loss < _SMALL * (model.loss - model.n_data):
         return Withdrawn(least, reason=Reason.SMALL)
-    return drifting(problem, model, effects, structure, rows)
+    return drifting(outcome)
+
+
+def _no_step(outcome: Outcome) -> Withdrawn | None:
+    """Return what begins at a time, if what is left goes with time all the same."""
+    steps = [effect.key for effect in outcome.found if effect.starts_from is not None]
+    if steps and any(carrier.is_order for carrier in outcome.structure.present):
+        return Withdrawn(steps[0], reason=Reason.NO_STEP)
+    return None
 
 
 def implausible(model: Fit, effects: Sequence[Effect]) -> Withdrawn | None:
@@ -312,15 +320,15 @@ def implausible(model: Fit, effects: Sequence[Effect]) -> Withdrawn | None:
     return None
 
 
-def _faint(model: Fit, effects: Sequence[Effect]) -> Withdrawn | None:
+def _faint(outcome: Outcome) -> Withdrawn | None:
     """Return the first effect that may as well do nothing, by its clustered covariance.
 
     All its values together: those of a moved exit point are each in doubt through the others.
     """
     from scipy.stats import chi2
 
-    for effect in effects:
-        if chi2.sf(model.wald[effect.key], len(effect.parameters)) > SIGNIFICANCE:
+    for effect in outcome.found:
+        if chi2.sf(outcome.fit.wald[effect.key], len(effect.parameters)) > SIGNIFICANCE:
             return Withdrawn(effect.key, reason=Reason.FAINT)
     return None
 
@@ -348,8 +356,3 @@ def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
     if len(gains) >= 6:  # their scatter is known to a third then
         doubt = min(doubt, len(gains) * float(np.var(gains, ddof=1)))
     return Gain(share, float(np.sqrt(doubt)) / total)
-
-
-def without(effects: Sequence[Effect], *keys: str) -> list[Effect]:
-    """Return the effects whose keys are not among those given."""
-    return [effect for effect in effects if effect.key not in keys]

@@ -3,18 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.readings import InternalForces, readings_of
+from designer.diagnosis.readings import Guess, balanced_readings, readings_of
 from designer.effects.effect import Readings, Setting, as_built
 from designer.effects.registry import SHIPPED, KnownEffects
 from designer.model.machine import Machine
 from designer.model.measured_data import EVEN, Measured, Noise
 
+Kind = tuple[object, ...]
+"""A set of effects, whatever their values, with the noise that is assumed."""
 
+_MOST_TURNS = 12
+"""Turns at most: what sensors add depends little on internal forces, so that few will do."""
+
+
+def kind_of(settings: Sequence[Setting], noise: Noise) -> Kind:
+    """Return what a guess is remembered by."""
+    return (noise, *(setting.effect.key for setting in settings))
+
+
+@dataclass(eq=False)
 class Predictor:
     """Predicts readings of one data set; remembers the last few machines it solved.
 
@@ -28,40 +40,33 @@ class Predictor:
         As drawn, without any effect.
     measured : Measured
         The data.
-    fixed : sequence of Setting
+    fixed : tuple of Setting
         Effects that are declared; with those that are tried they act in the order of ``effects``.
     effects : KnownEffects
         All effects, in the order in which they act.
     """
 
-    def __init__(
-        self,
-        machine: Machine,
-        measured: Measured,
-        fixed: Sequence[Setting] = (),
-        effects: KnownEffects = SHIPPED,
-    ) -> None:
-        self._machine = machine
-        self._measured = measured
-        self._fixed = tuple(fixed)
-        self._effects = effects
-        self._forces = InternalForces(self.built, self._shown)
-        self._known: dict[tuple[object, ...], tuple[Readings, Readings]] = {}
-        self._slopes: dict[tuple[object, ...], FloatArray] = {}
+    machine: Machine
+    measured: Measured
+    fixed: tuple[Setting, ...] = ()
+    effects: KnownEffects = SHIPPED
+    _guesses: dict[Kind, Guess] = field(init=False, default_factory=dict)
+    _known: dict[Kind, tuple[Readings, Readings]] = field(init=False, default_factory=dict)
+    _slopes: dict[Kind, FloatArray] = field(init=False, default_factory=dict)
 
     def at(self, measured: Measured) -> Predictor:
         """Return the same model for other rows; for the same rows, one without a memory."""
-        return type(self)(self._machine, measured, self._fixed, self._effects)
+        return replace(self, measured=measured)
 
     def built(self, settings: Sequence[Setting]) -> Machine:
         """Return the machine with the declared effects and these."""
-        return as_built(self._machine, self._all(settings))
+        return as_built(self.machine, self._all(settings))
 
     def _all(self, settings: Sequence[Setting]) -> list[Setting]:
         """Return the effects that show in these rows, in the order in which they act."""
-        all_settings = (*self._fixed, *settings)
-        is_still = self._measured.settled
-        return self._effects.in_order(
+        all_settings = (*self.fixed, *settings)
+        is_still = self.measured.settled
+        return self.effects.in_order(
             s for s in all_settings if not (is_still and s.effect.needs_motion)
         )
 
@@ -73,7 +78,7 @@ class Predictor:
     @property
     def spare_cables(self) -> int:
         """Cables beyond the degrees of freedom: internal forces of each row."""
-        robot = self._machine.robot
+        robot = self.machine.robot
         return max(robot.n_cables - robot.degrees_of_freedom, 0)
 
     def __call__(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
@@ -90,7 +95,7 @@ class Predictor:
         What is predicted; but internal forces that were taken from lengths alone hold their noise,
         with which the residual would go of itself. Then it is what the pose alone tells.
         """
-        if not self.spare_cables or np.isfinite(self._measured.tension_N).any():
+        if not self.spare_cables or np.isfinite(self.measured.tension_N).any():
             return self(settings, noise)
         return self._shown(self._physical(settings, noise)[1], settings)
 
@@ -101,11 +106,9 @@ class Predictor:
             true = self._remembered(settings, noise, self._with_forces)[0]
         else:
             limp = replace(self.built(settings), flexural_rigidity_N_m2=0.0)
-            true = readings_of(limp, self._measured.poses, self._measured)
-        return Readings(
-            self._measured.length_m - displayed.length_m + true.length_m,
-            self._measured.tension_N - displayed.tension_N + true.tension_N,
-        )
+            true = readings_of(limp, self.measured.poses, self.measured)
+        measured = self.measured.readings
+        return Readings(*np.hsplit(measured - displayed.stacked + true.stacked, 2))
 
     def _remembered(
         self,
@@ -131,24 +134,53 @@ class Predictor:
         return self._slopes[key]
 
     def _physical(self, settings: Sequence[Setting], _: Noise) -> tuple[Readings, Readings]:
-        readings = readings_of(self.built(settings), self._measured.poses, self._measured)
+        readings = readings_of(self.built(settings), self.measured.poses, self.measured)
         return readings, readings
 
     def _with_forces(self, settings: Sequence[Setting], noise: Noise) -> tuple[Readings, Readings]:
-        return self._forces.readings(settings, noise, self._measured)
+        kind = kind_of(settings, noise)
+        guess, *answer = self._settled(settings, noise, judges=kind not in self._guesses)
+        self._guesses[kind] = guess  # near what it will be for the next values of these effects
+        return answer[0], answer[1]
 
     def trust_anew(self, settings: Sequence[Setting], noise: Noise) -> bool:
-        """Judge anew how far readings can be trusted with these effects; tell if that changed."""
-        if not self.spare_cables or not self._forces.trust_anew(settings, noise, self._measured):
+        """Judge anew how far readings can be trusted with these effects; tell if that changed.
+
+        Between two calls it stays, so that residuals have slopes.
+        """
+        if not self.spare_cables:
+            return False
+        kind = kind_of(settings, noise)
+        before = self._guesses.get(kind)
+        guess = self._guesses[kind] = self._settled(settings, noise, judges=True)[0]
+        if before is not None and before.distrust == guess.distrust:
             return False
         self._known.clear()
         self._slopes.clear()
         return True
 
+    def _settled(
+        self, settings: Sequence[Setting], noise: Noise, *, judges: bool
+    ) -> tuple[Guess, Readings, Readings]:
+        """Repeat until what sensors and stiff ends add, and how far readings are off, agree.
+
+        What they add depends on the internal forces in turn, though little.
+        """
+        machine, measured = self.built(settings), self.measured
+        nothing = Guess(np.zeros_like(measured.readings))
+        guess = self._guesses.get(kind_of(settings, noise), nothing)
+        for _ in range(_MOST_TURNS):
+            true, straightened = balanced_readings(machine, measured, guess, noise)
+            displayed = self._shown(straightened, settings)
+            before, guess = guess, guess.after(measured, true, displayed, noise, judges=judges)
+            if guess.is_near(before, noise):
+                break
+        return guess, true, displayed
+
     def _shown(self, readings: Readings, settings: Sequence[Setting]) -> Readings:
         for setting in self._all(settings):
             if setting.effect.on_readings is not None:
-                readings = setting.effect.on_readings(readings, setting.values, self._measured)
+                readings = setting.effect.on_readings(readings, setting.values, self.measured)
         return readings
 
 
@@ -173,13 +205,7 @@ class Problem:
     @property
     def sigma(self) -> FloatArray:
         """Noise of each channel: lengths [m], then tensions [N] (2 n_cables,)."""
-        n = self.measured.length_m.shape[1]
-        return np.repeat([self.noise.length_m, self.noise.tension_N], n)
-
-    @property
-    def readings(self) -> FloatArray:
-        """Measured lengths [m], then tensions [N] (n_rows, 2 n_cables); NaN where missing."""
-        return np.hstack([self.measured.length_m, self.measured.tension_N])
+        return self.noise.of_channels(self.measured.length_m.shape[1])
 
     def free_readings(self, mask: BoolArray) -> int:
         """Return how many of the readings taken (n_rows, 2 n_cables) are left to test the model.
@@ -200,7 +226,11 @@ class Problem:
 
     def residual(self, settings: Sequence[Setting]) -> FloatArray:
         """Return (measured - predicted) / noise (n_rows, 2 n_cables); NaN where not measured."""
-        read, sigma, predicted = self.readings, self.sigma, self.predicted(settings).stacked
+        read, sigma, predicted = (
+            self.measured.readings,
+            self.sigma,
+            self.predicted(settings).stacked,
+        )
         residual = np.asarray((read - predicted) / sigma)
         unheld = np.isnan(predicted) & ~np.isnan(read)
         if unheld.any():

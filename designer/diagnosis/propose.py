@@ -66,7 +66,7 @@ def propose(
     readings, rival_readings = (
         elsewhere.predicted(settings).stacked for settings in (fitted, rival)
     )
-    is_measured = ~np.isnan(problem.readings).all(axis=0)
+    is_measured = ~np.isnan(problem.measured.readings).all(axis=0)
     gap = (readings - rival_readings)[:, is_measured] / problem.sigma[is_measured]
     separation = np.sqrt(np.nansum(gap**2, axis=1))
     size = np.maximum(np.ptp(positions, axis=0), 1e-9)

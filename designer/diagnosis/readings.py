@@ -6,14 +6,13 @@ Of a robot with cables to spare the internal forces of each row are taken from i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.diagnosis.statistics import MAD_TO_STD
-from designer.effects.effect import Readings, Setting
+from designer.effects.effect import Readings
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured, Noise
@@ -92,8 +91,6 @@ def straightened_m(machine: Machine, tension_N: FloatArray, span_m: FloatArray) 
     return np.asarray(load**2 * 3.0 * layer / (8.0 * tension_N**2))
 
 
-_MOST_TURNS = 12
-"""Turns at most: what sensors add depends little on internal forces, so that few will do."""
 _STILL = 1e-7
 """Of the noise: far below what the slopes of a fit would show."""
 _ABOUT = (0.7, 2.8)
@@ -101,76 +98,13 @@ _ABOUT = (0.7, 2.8)
 most a factor of two below the residual; √2 more on either side keep it from swinging."""
 
 
-class InternalForces:
-    """Predicts readings row by row from what was read; remembers a guess for each set of effects.
-
-    Parameters
-    ----------
-    built : callable
-        The machine with given effects.
-    sensors : callable
-        What sensors make of lengths and tensions that are there, with given effects.
-    """
-
-    def __init__(
-        self,
-        built: Callable[[Sequence[Setting]], Machine],
-        sensors: Callable[[Readings, Sequence[Setting]], Readings],
-    ) -> None:
-        self._built = built
-        self._shown = sensors
-        self._guesses: dict[tuple[object, ...], _Guess] = {}
-
-    def trust_anew(self, settings: Sequence[Setting], noise: Noise, measured: Measured) -> bool:
-        """Judge anew how far readings can be trusted with these effects; tell if that changed.
-
-        Between two calls it stays, so that residuals have slopes.
-        """
-        kind = _kind(settings, noise)
-        before = self._guesses[kind].distrust if kind in self._guesses else None
-        self._guesses[kind] = self._settled(settings, noise, measured, judges=True)[0]
-        return before != self._guesses[kind].distrust
-
-    def readings(
-        self, settings: Sequence[Setting], noise: Noise, measured: Measured
-    ) -> tuple[Readings, Readings]:
-        """Return lengths and tensions that are there, and those that the sensors show."""
-        kind = _kind(settings, noise)
-        judges = kind not in self._guesses
-        guess, true, displayed = self._settled(settings, noise, measured, judges=judges)
-        self._guesses[kind] = guess  # near what it will be for the next values of these effects
-        return true, displayed
-
-    def _settled(
-        self, settings: Sequence[Setting], noise: Noise, measured: Measured, *, judges: bool
-    ) -> tuple[_Guess, Readings, Readings]:
-        """Repeat until what sensors and stiff ends add, and how far readings are off, agree.
-
-        What they add depends on the internal forces in turn, though little.
-        """
-        machine = self._built(settings)
-        shape = (2, *measured.length_m.shape)
-        guess = self._guesses.get(_kind(settings, noise), _Guess(np.zeros(shape)))
-        for _ in range(_MOST_TURNS):
-            true, straightened = _balanced(machine, measured, guess, noise)
-            displayed = self._shown(straightened, settings)
-            before, guess = guess, guess.after(measured, true, displayed, noise, judges=judges)
-            if guess.is_near(before, noise):
-                break
-        return guess, true, displayed
-
-
-def _kind(settings: Sequence[Setting], noise: Noise) -> tuple[object, ...]:
-    return (noise, *(setting.effect.key for setting in settings))
-
-
 @dataclass(frozen=True, slots=True, eq=False)
-class _Guess:
+class Guess:
     """What internal forces are taken with.
 
     Parameters
     ----------
-    added : array (2, n_rows, n_cables)
+    added : array (n_rows, 2 n_cables)
         What sensors and stiff ends add to lengths [m] and tensions [N].
     distrust : (float, float)
         By how much more than noise lengths and tensions are off. As long as the model is off,
@@ -182,22 +116,22 @@ class _Guess:
     distrust: tuple[float, float] = (1.0, 1.0)
 
     def after(
-        self, measured: Measured, true: Readings, readings: Readings, noise: Noise, *, judges: bool
-    ) -> _Guess:
+        self, measured: Measured, true: Readings, displayed: Readings, noise: Noise, *, judges: bool
+    ) -> Guess:
         """Return the guess that an answer leads to; with ``judges``, also of the distrust."""
-        more = (readings.length_m - true.length_m, readings.tension_N - true.tension_N)
+        added = np.nan_to_num(displayed.stacked - true.stacked)
         if not judges:
-            return _Guess(np.nan_to_num(more), self.distrust)
-        length = np.abs(measured.length_m - readings.length_m) / noise.length_m
-        tension = np.abs(measured.tension_N - readings.tension_N) / noise.tension_N
+            return Guess(added, self.distrust)
+        sigma = noise.of_channels(measured.length_m.shape[1])
+        length, tension = np.hsplit(np.abs(measured.readings - displayed.stacked) / sigma, 2)
         distrust = (_distrust(length, self.distrust[0]), _distrust(tension, self.distrust[1]))
-        return _Guess(np.nan_to_num(more), distrust)
+        return Guess(added, distrust)
 
-    def is_near(self, previous: _Guess, noise: Noise) -> bool:
+    def is_near(self, previous: Guess, noise: Noise) -> bool:
         """Tell whether another guess would give the same, to a small share of the noise."""
-        change = np.abs(self.added - previous.added).max(axis=(1, 2))
-        still = change[0] <= _STILL * noise.length_m and change[1] <= _STILL * noise.tension_N
-        return bool(still) and self.distrust == previous.distrust
+        change = np.abs(self.added - previous.added)
+        is_still = change <= _STILL * noise.of_channels(change.shape[1] // 2)
+        return bool(is_still.all()) and self.distrust == previous.distrust
 
 
 def _distrust(off: FloatArray, before: float) -> float:
@@ -209,16 +143,17 @@ def _distrust(off: FloatArray, before: float) -> float:
     return float(2.0 ** np.floor(np.log2(max(size, 1.0))))
 
 
-def _balanced(
-    machine: Machine, measured: Measured, guess: _Guess, noise: Noise
+def balanced_readings(
+    machine: Machine, measured: Measured, guess: Guess, noise: Noise
 ) -> tuple[Readings, Readings]:
     """Return true lengths and tensions, and those of cables with stiff ends."""
+    length_m, tension_N = np.hsplit(measured.readings - guess.added, 2)
     statics = solve_internal(
         machine.robot,
         measured.poses,
         machine.cable,
-        measured.length_m - guess.added[0],
-        measured.tension_N - guess.added[1],
+        length_m,
+        tension_N,
         (noise.length_m * guess.distrust[0], noise.tension_N * guess.distrust[1]),
         added_force_N(machine, measured),
     )

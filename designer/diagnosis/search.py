@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from designer.arrays import BoolArray
 from designer.diagnosis.fit import Fit, fit, huber
@@ -118,10 +118,16 @@ def _chance(gain: float, effect: Effect, looks: int) -> float:
     return min(float(chi2.sf(max(gain, 0.0), len(effect.parameters))) * looks, 1.0)
 
 
+def without(effects: Sequence[Effect], *keys: str) -> list[Effect]:
+    """Return the effects whose keys are not among those given."""
+    return [effect for effect in effects if effect.key not in keys]
+
+
 def _best_variance(trials: Sequence[EffectTrial]) -> float:
     return min((t.fit.variance for t in trials), default=1.0)
 
 
+@dataclass(eq=False)
 class Searcher:
     """Searches one data set.
 
@@ -131,7 +137,7 @@ class Searcher:
         Data, model, noise.
     candidates : sequence of Effect
         In the order in which effects act.
-    unconditional : sequence of Effect
+    given : sequence of Effect
         Unknown from the start: always fitted, and never a finding.
     rows : array (n_rows,) of bool
         Rows for fitting.
@@ -139,19 +145,11 @@ class Searcher:
         Told what is being tried; where the time is spent, the search ends.
     """
 
-    def __init__(
-        self,
-        problem: Problem,
-        candidates: Sequence[Effect],
-        unconditional: Sequence[Effect],
-        rows: BoolArray,
-        progress: Pace | None = None,
-    ) -> None:
-        self._problem = problem
-        self._candidates = tuple(candidates)
-        self._given = tuple(unconditional)
-        self._rows = rows
-        self._progress = progress or Pace()
+    problem: Problem
+    candidates: Sequence[Effect]
+    given: Sequence[Effect]
+    rows: BoolArray
+    progress: Pace = field(default_factory=Pace)
 
     def run(self) -> Search:
         """Add, exchange and prune until nothing changes, or a set of effects comes again."""
@@ -162,14 +160,14 @@ class Searcher:
         while set(effects) not in visited:
             visited.append(set(effects))
             trials = self.trials(effects, present, f"round {len(steps) + 1}")
-            is_over = self._progress.is_over
+            is_over = self.progress.is_over
             best = None if is_over else _simplest(trials)
             if trials:
                 steps.append(Step(tuple(trials), best.effect if best else None, not is_over))
             # More that a machine lacks at once are not to be told apart by one log.
             if best is None or len(effects) == 5:
                 break
-            self._progress(f"found {best.effect.key}")
+            self.progress(f"found {best.effect.key}")
             # What is worse alone is seldom better in the place of a member.
             outsiders = [t.effect for t in trials[:8]]
             effects = self._exchanged([*effects, best.effect], best.fit, outsiders)
@@ -187,15 +185,15 @@ class Searcher:
         anew: bool = False,
     ) -> Fit:
         """Fit the given effects and the found ones together."""
-        effects = self._sorted([*self._given, *effects_found])
+        effects = self._sorted([*self.given, *effects_found])
         settings = start.settings if start else ()
-        return fit(self._problem, effects, self._rows, settings, thorough=thorough, anew=anew)
+        return fit(self.problem, effects, self.rows, settings, thorough=thorough, anew=anew)
 
     def trials(self, effects: Sequence[Effect], present: Fit, part: str) -> list[EffectTrial]:
         """Try every other candidate in addition, best first."""
         outsiders = self._others(effects)
         trials: list[EffectTrial] = []
-        for effect in self._progress.each(part, outsiders):
+        for effect in self.progress.each(part, outsiders):
             model = self.fit([*effects, effect], present, anew=True)
             gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
             chance = _chance(gain, effect, len(outsiders))
@@ -206,8 +204,8 @@ class Searcher:
         for trial in trials:  # cross-validated from the best down, until one earns its place
             # Three are, whatever comes of it: a report shows them.
             settled = len(answer) >= 3 and any(t.may_be_added for t in answer)
-            if self._progress.is_over and not settled and trial.chance < SIGNIFICANCE:
-                self._progress.leave_out(f"{trial.effect.key} and below on rows not seen")
+            if self.progress.is_over and not settled and trial.chance < SIGNIFICANCE:
+                self.progress.leave_out(f"{trial.effect.key} and below on rows not seen")
                 return answer + trials[len(answer) :]
             if settled or trial.chance >= SIGNIFICANCE:  # needs no proof
                 answer.append(trial)
@@ -227,13 +225,13 @@ class Searcher:
         parameters or without one; or if it predicted unseen rows at least half as well when
         ``effect`` was added, and predicts them about as well in its place.
         """
-        rest = [e for e in effects if e.key != effect.key]
+        rest = without(effects, effect.key)
         scale = present.variance * present.inflation[effect.key]
         added = [step for step in steps if step.added is not None and step.added.key == effect.key]
         gains = {t.effect.key: t.heldout_gain for step in added[-1:] for t in step.trials}
         good = {key for key, gain in gains.items() if gain >= 0.5 * gains[effect.key]}
         answer = []
-        for rival in self._progress.each(f"rivals of {effect.key}", self._others(effects)):
+        for rival in self.progress.each(f"rivals of {effect.key}", self._others(effects)):
             trials = [t.fit for step in steps for t in step.trials if t.effect.key == rival.key]
             fits = [self.fit([*rest, rival], present, anew=True)]
             last = dict.fromkeys([*trials[:1], *trials[-1:]])
@@ -256,16 +254,15 @@ class Searcher:
         return answer
 
     def _others(self, effects_found: Sequence[Effect]) -> list[Effect]:
-        keys = {effect.key for effect in (*effects_found, *self._given)}
-        return [effect for effect in self._candidates if effect.key not in keys]
+        return without(self.candidates, *(e.key for e in (*effects_found, *self.given)))
 
     def _unseen_loss(self, effects_found: Sequence[Effect], start: Fit) -> float:
         """Return the loss over each part of the rows, fitted to the other parts."""
-        effects = self._sorted([*self._given, *effects_found])
+        effects = self._sorted([*self.given, *effects_found])
         loss = 0.0
-        for part in folds(self._rows):
-            model = fit(self._problem, effects, self._rows & ~part, start.settings)
-            loss += float(huber(self._problem.residual(model.settings)[part]).sum())
+        for part in folds(self.rows):
+            model = fit(self.problem, effects, self.rows & ~part, start.settings)
+            loss += float(huber(self.problem.residual(model.settings)[part]).sum())
         return loss
 
     def _exchanged(
@@ -275,7 +272,7 @@ class Searcher:
         present = self.fit(effects, start)
         for k in range(len(effects) - 1):  # the newest was chosen among all
             for outsider in outsiders:
-                if outsider not in self._others(effects) or self._progress.is_over:
+                if outsider not in self._others(effects) or self.progress.is_over:
                     continue
                 swapped = [*effects[:k], outsider, *effects[k + 1 :]]
                 model = self.fit(swapped, present)
@@ -290,12 +287,12 @@ class Searcher:
         for effect in list(effects):
             if len(effects) == 1:
                 break
-            rest = [e for e in effects if e.key != effect.key]
-            without = self.fit(rest, present)
+            rest = without(effects, effect.key)
+            fewer = self.fit(rest, present)
             scale = present.variance * present.inflation[effect.key]
-            gain = (without.loss - present.loss) / scale
-            if _chance(gain, effect, len(self._candidates)) > SIGNIFICANCE:
-                effects, present = rest, without
+            gain = (fewer.loss - present.loss) / scale
+            if _chance(gain, effect, len(self.candidates)) > SIGNIFICANCE:
+                effects, present = rest, fewer
         return effects
 
     def _predicting(self, effects: list[Effect], present: Fit) -> list[Effect]:
@@ -304,15 +301,15 @@ class Searcher:
         for effect in list(effects):
             if len(effects) == 1:
                 break
-            rest = [e for e in effects if e.key != effect.key]
-            without = self._unseen_loss(rest, present)
-            if without <= loss:
-                effects, loss = rest, without
+            rest = without(effects, effect.key)
+            loss_of_rest = self._unseen_loss(rest, present)
+            if loss_of_rest <= loss:
+                effects, loss = rest, loss_of_rest
         return effects
 
     def _penalised(self, model: Fit) -> float:
         return model.loss + _PENALTY * model.variance * len(model.vector)
 
     def _sorted(self, effects: Sequence[Effect]) -> list[Effect]:
-        place = {effect.key: k for k, effect in enumerate(self._candidates)}
+        place = {effect.key: k for k, effect in enumerate(self.candidates)}
         return sorted(effects, key=lambda effect: place.get(effect.key, -1))

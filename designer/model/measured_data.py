@@ -63,9 +63,14 @@ class Measured:
         return len(self.length_m)
 
     @property
+    def readings(self) -> FloatArray:
+        """Lengths [m], then tensions [N] (n_rows, 2 n_cables); NaN where missing."""
+        return np.hstack([self.length_m, self.tension_N])
+
+    @property
     def n_readings(self) -> IntArray:
         """Number of lengths and tensions in each row (n_rows,)."""
-        return np.asarray(np.isfinite(np.hstack([self.length_m, self.tension_N])).sum(axis=1))
+        return np.asarray(np.isfinite(self.readings).sum(axis=1))
 
     @property
     def columns(self) -> frozenset[str]:
@@ -98,6 +103,10 @@ class Noise:
     length_m: float
     tension_N: float
     source: str
+
+    def of_channels(self, n_cables: int) -> FloatArray:
+        """Return it for each channel: lengths [m], then tensions [N] (2 n_cables,)."""
+        return np.repeat([self.length_m, self.tension_N], n_cables)
 
 
 EVEN = Noise(1.0, 1.0, "none")

@@ -46,16 +46,16 @@ def test_it_ends_where_pruning_undoes_what_was_added(searcher, monkeypatch) -> N
 
 
 def test_what_does_not_foretell_is_left_out(searcher) -> None:
-    by_id = {effect.id: effect for effect in searcher._candidates}
+    by_id = {effect.id: effect for effect in searcher.candidates}
     both = [by_id["platform_mass"], by_id["tension_bias"]]
     kept = searcher._predicting(both, searcher.fit(both))
     assert [effect.id for effect in kept] == ["platform_mass"]
 
 
 def test_a_model_that_holds_no_pose_is_worse_than_any_error(searcher) -> None:
-    problem = searcher._problem
-    away = next(e for e in searcher._candidates if e.key == "anchor_offset of cable 1")
+    problem = searcher.problem
+    away = next(e for e in searcher.candidates if e.key == "anchor_offset of cable 1")
     settings = [Setting(away, {"x_m": 1e4, "y_m": 1e4, "z_m": -1e4})]
     assert np.isnan(problem.predicted(settings).length_m).all()
     residual = problem.residual(settings)
-    assert (residual > 5.0 * np.abs(problem.readings) / problem.sigma).all()
+    assert (residual > 5.0 * np.abs(problem.measured.readings) / problem.sigma).all()
