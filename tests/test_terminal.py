@@ -51,7 +51,7 @@ def test_work_that_says_nothing_is_told_to_go_on(
         with terminal.ProgressBars() as bars, bars.task("verification", 1):
             time.sleep(0.5)
     else:
-        with terminal.Spinner("searching") as spinner:
+        with terminal.ProgressBars("searching") as spinner:
             spinner("what is left")
             time.sleep(0.5)
     told = capsys.readouterr().err.splitlines()

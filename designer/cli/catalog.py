@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from designer.cli.options import NEGATIVE_ANSWER, WRONG_INPUT, NoPlugins, path_of, quantity_of
+from designer.cli.options import WRONG_INPUT, AsJson, NoPlugins, argument, quantity_of
 from designer.errors import Fault, InputError
 from designer.units import LENGTH
 
@@ -36,9 +36,9 @@ def catalog_list(
     nominal: Annotated[
         bool, typer.Option("--nominal", help="Those computed by a standard's factors instead.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
+    as_json: AsJson = False,
     no_plugins: NoPlugins = False,
-) -> None:
+) -> bool:
     """List the grades with their source.
 
     With --json it is a list with what the table has of each, in SI: id, manufacturer, product,
@@ -64,7 +64,7 @@ def catalog_list(
         typer.echo(f"{len(further)} nominal grades, computed by a standard's factors: --nominal")
     if not listed_grades:
         typer.echo("no grade is like that", err=True)
-        raise typer.Exit(NEGATIVE_ANSWER)
+    return bool(listed_grades)
 
 
 def _loaded(no_plugins: bool) -> Catalogue:
@@ -117,12 +117,7 @@ def catalog_show(
 @catalog.command("check")
 def catalog_check(
     path: Annotated[
-        Path | None,
-        typer.Argument(
-            parser=path_of,
-            metavar="PATH",
-            help="Grade file, or a folder of them; else all that load.",
-        ),
+        Path | None, argument("PATH", "Grade file, or a folder of them; else all that load.")
     ] = None,
     no_plugins: NoPlugins = False,
 ) -> None:
@@ -147,12 +142,7 @@ def catalog_check(
 @catalog.command("new-plugin")
 def catalog_new_plugin(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, such as acme-ropes.")],
-    path: Annotated[
-        Path | None,
-        typer.Argument(
-            parser=path_of, metavar="PATH", help="New folder to write, NAME if left out."
-        ),
-    ] = None,
+    path: Annotated[Path | None, argument("PATH", "New folder to write, NAME if left out.")] = None,
     effect: Annotated[
         bool, typer.Option("--effect", help="One that brings a physical effect, not grades.")
     ] = False,

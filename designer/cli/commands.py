@@ -30,8 +30,9 @@ from designer.cli.options import (
     Config,
     NoPlugins,
     Template,
+    argument,
+    option,
     output_option,
-    path_of,
 )
 from designer.cli.schema import schema, write_with_schema
 from designer.cli.studies import catalogue_of, study_of
@@ -49,8 +50,7 @@ from designer.io.process import readable_output, settle_in
 from designer.resources import example_names
 
 if TYPE_CHECKING:
-    from designer.model.measured_data import Measured
-    from designer.study import Study
+    from designer.diagnosis.result import Diagnosis
 
 
 class Commands(TyperGroup):
@@ -69,12 +69,15 @@ class Commands(TyperGroup):
             return super().make_context(*arguments, **named)
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command that is asked for."""
+        """Run the command that is asked for; one that returns False has answered no."""
         with readable_output():
             try:
-                return super().invoke(ctx)
+                answer = super().invoke(ctx)
             except EOFError as error:  # typer would call it aborted, with the status of an answer
                 raise RuntimeError(described(error)) from error
+            if answer is False:
+                raise typer.Exit(NEGATIVE_ANSWER)
+            return answer
 
 
 app = typer.Typer(
@@ -143,7 +146,7 @@ def report(
     output: Annotated[Path | None, output_option("CONFIG-report")] = None,
     template: Template = None,
     no_plugins: NoPlugins = False,
-) -> None:
+) -> bool:
     """Size, sweep the workspace, choose a rope, and write the report.
 
     Writes report.html, report.pdf, result.json, candidates.csv and workspace.nc.
@@ -179,8 +182,7 @@ def report(
         written = file_names(building)
     print_left_out(filter(None, [why_no_scenes()]))
     print_summary(analysis, folder, written)
-    if not analysis.is_positive:
-        raise typer.Exit(NEGATIVE_ANSWER)
+    return analysis.is_positive
 
 
 @app.command()
@@ -188,7 +190,7 @@ def size(
     config: Config,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
     no_plugins: NoPlugins = False,
-) -> None:
+) -> bool:
     """Size the configured pose alone: massless, loop with its iterates, optimum.
 
     Example:  designer size fast.yaml
@@ -211,8 +213,7 @@ def size(
         typer.echo(json_text(size_dict(study, pose)))
     else:
         print_pose(study, pose)
-    if not pose.sizing.statics.is_solved:
-        raise typer.Exit(NEGATIVE_ANSWER)
+    return bool(pose.sizing.statics.is_solved)
 
 
 @app.command()
@@ -224,13 +225,11 @@ def diagnose(
     ] = False,
     data: Annotated[
         Path | None,
-        typer.Option(
-            "--data", parser=path_of, metavar="CSV", help="Measured data, instead of the study's."
-        ),
+        option("--data", metavar="CSV", text="Measured data, instead of the study's."),
     ] = None,
     template: Template = None,
     no_plugins: NoPlugins = False,
-) -> None:
+) -> bool:
     """Compare measured data with the model, and find the effect that the model lacks.
 
     Writes diagnosis.html, diagnosis.pdf, diagnosis.json and CONFIG.diagnosed.yaml, which has what
@@ -243,8 +242,8 @@ def diagnose(
     Exit status 0: all structure is explained. 1: some is left, or declared effects do not help.
     2: the input is wrong.
     """
-    from designer.cli.tables import print_diagnosis
-    from designer.cli.terminal import Spinner, announce_compiling, print_left_out
+    from designer.cli.tables import print_check, print_diagnosis
+    from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out
     from designer.io.output import file_names, output_folder
     from designer.measured.read import read_measured
     from designer.plugins.find import find_plugins
@@ -260,68 +259,52 @@ def diagnose(
         measurements = replace(measurements, file=data)
         study = replace(study, measurements=measurements)
     measured = read_measured(study)
-    if checks:
-        _check(study, measured, output or Path(f"{config.stem}-check"), template)
-        return
-    catalogue = catalogue_of(study, plugins)
+    catalogue = None if checks else catalogue_of(study, plugins)
     announce_compiling()
-    folder = output or Path(f"{config.stem}-diagnosis")
+    folder = output or Path(f"{config.stem}-{'check' if checks else 'diagnosis'}")
 
+    from designer.diagnosis.check import Check, check
     from designer.diagnosis.design import with_design
     from designer.diagnosis.diagnose import diagnose_study
     from designer.io.diagnosis_files import diagnosed_config
+    from designer.report.diagnosis.check import write_check
     from designer.report.diagnosis.report import write_diagnosis
 
-    with output_folder(folder) as building, Spinner("searching") as spinner:
-        diagnosis = diagnose_study(study, measurements, measured, spinner)
-        spinner("the design with and without")
-        diagnosis = with_design(diagnosis, catalogue.grades)
-        spinner("report")
-        write_diagnosis(diagnosis, building, template)
-        (building / "diagnosis.json").write_text(f"{diagnosis.to_json()}\n", encoding="utf-8")
-        text = diagnosed_config(diagnosis, folder)
-        (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
-        written = file_names(building)
-    n_known = len(study.known_effects.problems)
-    print_left_out(diagnosis.study.known_effects.problems[n_known:])
-    print_diagnosis(diagnosis, folder, written)
-    if diagnosis.is_unexplained:
-        raise typer.Exit(NEGATIVE_ANSWER)
-
-
-def _check(study: Study, measured: Measured, folder: Path, template: Path | None) -> None:
-    from designer.cli.tables import print_check
-    from designer.cli.terminal import Spinner, announce_compiling
-    from designer.diagnosis.check import check
-    from designer.io.output import file_names, output_folder
-    from designer.report.diagnosis.check import write_check
-
-    assert study.measurements is not None
-    announce_compiling()
-    with output_folder(folder) as building, Spinner("checking") as spinner:
-        result = check(study, study.measurements, measured, spinner)
-        spinner("report")
-        write_check(result, building, template)
+    doing = "checking" if checks else "searching"
+    with output_folder(folder) as building, ProgressBars(doing) as bars:
+        result: Check | Diagnosis
+        if catalogue is None:
+            result = check(study, measurements, measured, bars)
+            bars("report")
+            write_check(result, building, template)
+        else:
+            result = diagnose_study(study, measurements, measured, bars)
+            bars("the design with and without")
+            result = with_design(result, catalogue.grades)
+            bars("report")
+            write_diagnosis(result, building, template)
+            text = diagnosed_config(result, folder)
+            (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
         (building / "diagnosis.json").write_text(f"{result.to_json()}\n", encoding="utf-8")
         written = file_names(building)
-    print_check(result, folder, written)
-    if not result.is_positive:
-        raise typer.Exit(NEGATIVE_ANSWER)
+    if isinstance(result, Check):
+        print_check(result, folder, written)
+        return result.is_positive
+    n_known = len(study.known_effects.problems)
+    print_left_out(result.study.known_effects.problems[n_known:])
+    print_diagnosis(result, folder, written)
+    return not result.is_unexplained
 
 
 @app.command()
 def explore(
-    config: Annotated[
-        Path | None,
-        typer.Argument(parser=path_of, metavar="[CONFIG]", help="The study, a YAML file."),
-    ] = None,
+    config: Annotated[Path | None, argument("[CONFIG]", "The study, a YAML file.")] = None,
     screenshot: Annotated[
         Path | None,
-        typer.Option(
+        option(
             "--screenshot",
-            parser=path_of,
             metavar="FILE",
-            help="Save a picture of the window once everything is answered, and close it.",
+            text="Save a picture of the window once everything is answered, and close it.",
         ),
     ] = None,
     no_plugins: NoPlugins = False,
@@ -355,10 +338,7 @@ def explore(
 @app.command()
 def init(
     path: Annotated[
-        Path | None,
-        typer.Argument(
-            parser=path_of, metavar="PATH", help="File to write, EXAMPLE.yaml if left out."
-        ),
+        Path | None, argument("PATH", "File to write, EXAMPLE.yaml if left out.")
     ] = None,
     example: Annotated[
         str,

@@ -6,9 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-from designer.cli.options import NoPlugins, Template, output_option, path_of
+from designer.cli.options import NoPlugins, Template, argument, output_option
 from designer.cli.studies import catalogue_of, study_of
 
 if TYPE_CHECKING:
@@ -16,8 +14,8 @@ if TYPE_CHECKING:
 
 
 def compare(
-    a: Annotated[Path, typer.Argument(parser=path_of, metavar="A", help="A study or result.json.")],
-    b: Annotated[Path, typer.Argument(parser=path_of, metavar="B", help="Another one.")],
+    a: Annotated[Path, argument("A", "A study or result.json.")],
+    b: Annotated[Path, argument("B", "Another one.")],
     output: Annotated[Path | None, output_option("A-B-comparison")] = None,
     template: Template = None,
     no_plugins: NoPlugins = False,

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import shlex
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from designer.cli.options import NEGATIVE_ANSWER, NoPlugins, output_option, path_of, quantity_of
+from designer.cli.options import NoPlugins, argument, option, output_option, quantity_of
 from designer.errors import Fault, InputError
 from designer.units import LENGTH, MASS, NUMBER, Dimension
 
@@ -24,90 +23,66 @@ Vector = Any
 """Three numbers in one text; typer would have a tuple as three arguments."""
 
 
-def _option(name: str, metavar: str, help_: str, parser: Callable[[str], Any]) -> Any:
-    return typer.Option(name, parser=parser, metavar=metavar, help=help_)
-
-
-def _number(option: str, dimension: Dimension, least: float = -math.inf) -> Callable[[str], float]:
-    def read(text: str) -> float:
-        value = quantity_of(option, text, dimension)
+def _number(
+    name: str, metavar: str, text: str, dimension: Dimension, least: float = -math.inf
+) -> Any:
+    def read(written: str) -> float:
+        value = quantity_of(name, written, dimension)
         if value < least:
-            raise InputError(
-                [Fault(option, None, "", f"{text} is too small", f"{least:g} or more")]
-            )
+            raise _refused(name, f"{written} is too small", f"{least:g} or more")
         return value
 
-    return read
+    return option(name, metavar=metavar, text=text, parser=read)
 
 
-def _vector(option: str, dimension: Dimension) -> Callable[[str], Point]:
-    def read(text: str) -> Point:
-        parts = [quantity_of(option, part, dimension) for part in text.strip("[] ").split(",")]
+def _vector(name: str, text: str, dimension: Dimension) -> Any:
+    def read(written: str) -> Point:
+        parts = [quantity_of(name, part, dimension) for part in written.strip("[] ").split(",")]
         if len(parts) != 3:
-            raise InputError([Fault(option, None, "", f"{text!r} is no point", "three: X,Y,Z")])
+            raise _refused(name, f"{written!r} is no point", "three: X,Y,Z")
         x, y, z = parts
         return x, y, z
 
-    return read
+    return option(name, metavar="X,Y,Z", text=text, parser=read)
+
+
+def _refused(name: str, problem: str, expected: str) -> InputError:
+    return InputError([Fault(name, None, "", problem, expected)])
 
 
 def import_robot(
-    file: Annotated[
-        Path,
-        typer.Argument(parser=path_of, metavar="FILE", help="A CASPR model (.xml) or .wcrfx."),
-    ],
+    file: Annotated[Path, argument("FILE", "A CASPR model (.xml) or .wcrfx.")],
     output: Annotated[Path | None, output_option("FILE's name with .yaml", "CONFIG")] = None,
     other: Annotated[
         Path | None,
-        typer.Option(
+        option(
             "--cables",
             "--bodies",
-            parser=path_of,
             metavar="XML",
-            help="The other file of a CASPR model, where it does not lie beside.",
+            text="The other file of a CASPR model, where it does not lie beside.",
         ),
     ] = None,
     cable_set: Annotated[
-        str | None, _option("--cable-set", "ID", "Which cables of a CASPR model.", str)
+        str | None, typer.Option(metavar="ID", help="Which cables of a CASPR model.")
     ] = None,
     mass: Annotated[
-        float | None,
-        _option("--mass", "MASS", "Of the platform, such as '90 kg'.", _number("--mass", MASS)),
+        float | None, _number("--mass", "MASS", "Of the platform, such as '90 kg'.", MASS)
     ] = None,
-    payload: Annotated[
-        float, _option("--payload", "MASS", "Added to it.", _number("--payload", MASS, 0.0))
-    ] = 0.0,
+    payload: Annotated[float, _number("--payload", "MASS", "Added to it.", MASS, 0.0)] = 0.0,
     centre_of_mass: Annotated[
-        Vector,
-        _option(
-            "--centre-of-mass",
-            "X,Y,Z",
-            "Of the platform, in its own frame.",
-            _vector("--centre-of-mass", LENGTH),
-        ),
+        Vector, _vector("--centre-of-mass", "Of the platform, in its own frame.", LENGTH)
     ] = None,
-    pose: Annotated[
-        Vector,
-        _option("--pose", "X,Y,Z", "Position to size for.", _vector("--pose", LENGTH)),
-    ] = None,
-    gravity: Annotated[
-        Vector,
-        _option("--gravity", "X,Y,Z", "Where things fall.", _vector("--gravity", NUMBER)),
-    ] = None,
+    pose: Annotated[Vector, _vector("--pose", "Position to size for.", LENGTH)] = None,
+    gravity: Annotated[Vector, _vector("--gravity", "Where things fall.", NUMBER)] = None,
     grade: Annotated[
-        str | None, _option("--grade", "ID", "A rope of `designer catalog list`.", str)
+        str | None, typer.Option(metavar="ID", help="A rope of `designer catalog list`.")
     ] = None,
     safety_factor: Annotated[
         float | None,
-        _option(
-            "--safety-factor",
-            "NUMBER",
-            "Breaking load over tension.",
-            _number("--safety-factor", NUMBER, 1.0),
-        ),
+        _number("--safety-factor", "NUMBER", "Breaking load over tension.", NUMBER, 1.0),
     ] = None,
     no_plugins: NoPlugins = False,
-) -> None:
+) -> bool:
     """Make a commented study of a robot in a file of CASPR or WireX.
 
     CASPR keeps a model in two files, NAME_bodies.xml and NAME_cables.xml: name either. What neither
@@ -132,8 +107,7 @@ def import_robot(
     _require_valid(text, missing, robot, path, find_plugins(with_plugins=not no_plugins))
     write_new_file(path, text)
     _tell(path, robot, missing)
-    if missing:
-        raise typer.Exit(NEGATIVE_ANSWER)
+    return not missing
 
 
 def _require_valid(

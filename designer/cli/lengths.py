@@ -6,9 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-from designer.cli.options import NEGATIVE_ANSWER, Config, NoPlugins, output_option, path_of
+from designer.cli.options import Config, NoPlugins, option, output_option
 from designer.cli.studies import catalogue_of, study_of
 
 if TYPE_CHECKING:
@@ -23,16 +21,15 @@ def lengths(
     config: Config,
     poses: Annotated[
         Path,
-        typer.Option(
+        option(
             "--poses",
-            parser=path_of,
             metavar="CSV",
-            help="Poses: columns x_m, y_m, z_m, and rx_rad, ry_rad, rz_rad if the platform turns.",
+            text="Poses: columns x_m, y_m, z_m, and rx_rad, ry_rad, rz_rad if the platform turns.",
         ),
     ],
     output: Annotated[Path | None, output_option("CONFIG-lengths.csv", "FILE")] = None,
     no_plugins: NoPlugins = False,
-) -> None:
+) -> bool:
     """Give the unstrained lengths and tensions at poses of yours, with the chosen rope.
 
     Writes the poses with the length of each cable, its tension at the exit point, and a verdict.
@@ -59,15 +56,14 @@ def lengths(
         answer = lengths_of(Analysis.begin(study, catalogue, reporter=bars), table.poses)
     if answer is None:
         show("No rope serves this study, so there are no lengths: see designer report.")
-        raise typer.Exit(NEGATIVE_ANSWER)
+        return False
     path = output or Path(f"{config.stem}-lengths.csv")
     write_file(path, answer.to_csv(table.names, table.values))
     print_left_out(f"{poses}: column {name} holds texts: left out" for name in table.left_out)
     _print_lengths(answer, path)
     if study.load_cases:
         show("These are of the platform at rest, without the load cases of the study.")
-    if not answer.holds.all():
-        raise typer.Exit(NEGATIVE_ANSWER)
+    return bool(answer.holds.all())
 
 
 def _print_lengths(lengths: Lengths, path: Path) -> None:

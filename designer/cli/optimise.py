@@ -6,23 +6,18 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-from designer.cli.options import NEGATIVE_ANSWER, NoPlugins, Template, output_option, path_of
+from designer.cli.options import NoPlugins, Template, argument, output_option
 
 if TYPE_CHECKING:
     from designer.optimum.result import Optimum
 
 
 def optimise(
-    plan: Annotated[
-        Path,
-        typer.Argument(parser=path_of, metavar="OPTIMISE", help="What to choose, a YAML file."),
-    ],
+    plan: Annotated[Path, argument("OPTIMISE", "What to choose, a YAML file.")],
     output: Annotated[Path | None, output_option("OPTIMISE-optimum")] = None,
     template: Template = None,
     no_plugins: NoPlugins = False,
-) -> None:
+) -> bool:
     """Choose fields of a study, such as mast positions, for the best result that can be found.
 
     \b
@@ -81,8 +76,7 @@ def optimise(
     _print_summary(optimum)
     text = f"{folder}: {', '.join(written)}; full reports in given and optimised"
     show(text, markup=False)
-    if not optimum.is_better:
-        raise typer.Exit(NEGATIVE_ANSWER)
+    return optimum.is_better
 
 
 def _print_summary(optimum: Optimum) -> None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -11,6 +12,7 @@ from designer.errors import Fault, InputError
 from designer.units import Dimension, QuantityError, read_quantity
 
 NEGATIVE_ANSWER = 1
+"""Of a command that returns False."""
 WRONG_INPUT = 2
 INTERRUPTED = 130
 """As the shell gives it after Ctrl-C."""
@@ -40,33 +42,37 @@ def _template_of(text: str) -> Path:
     return folder
 
 
-def output_option(usual: str, metavar: str = "DIR") -> typer.models.OptionInfo:
+def argument(metavar: str, text: str) -> Any:
+    """Return an argument that names a file or folder; ``text`` is its help."""
+    return typer.Argument(parser=path_of, metavar=metavar, help=text)
+
+
+def option(*names: str, metavar: str, text: str, parser: Callable[[str], Any] = path_of) -> Any:
+    """Return an option with a value, a file or folder unless ``parser`` reads something else."""
+    return typer.Option(*names, parser=parser, metavar=metavar, help=text)
+
+
+def output_option(usual: str, metavar: str = "DIR") -> Any:
     """Return the option for the folder, or FILE, to write; ``usual`` is what else is written."""
     kind = "Folder" if metavar == "DIR" else "File"
-    return typer.Option(  # type: ignore[no-any-return]  # typer types it for use as a default
-        "-o",
-        "--output",
-        parser=path_of,
-        metavar=metavar,
-        help=f"{kind} to write, {usual} if left out.",
-    )
+    text = f"{kind} to write, {usual} if left out."
+    return option("-o", "--output", metavar=metavar, text=text)
 
 
-Config = Annotated[
-    Path, typer.Argument(parser=path_of, metavar="CONFIG", help="The study, a YAML file.")
-]
+Config = Annotated[Path, argument("CONFIG", "The study, a YAML file.")]
 NoPlugins = Annotated[
     bool,
     typer.Option(
         "--no-plugins", help="Use shipped grades and effects only, for repeatable studies."
     ),
 ]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
 Template = Annotated[
     Path | None,
-    typer.Option(
+    option(
         "--template",
-        parser=_template_of,
         metavar="DIR",
-        help="Folder of page templates and styles of yours, which come before ours.",
+        text="Folder of page templates and styles of yours, which come before ours.",
+        parser=_template_of,
     ),
 ]

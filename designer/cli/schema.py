@@ -8,19 +8,13 @@ from typing import Annotated
 
 import typer
 
-from designer.cli.options import NoPlugins, path_of
+from designer.cli.options import NoPlugins, option
 
 
 def schema(
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            parser=path_of,
-            metavar="FILE",
-            help="File to write; printed if left out.",
-        ),
+        option("-o", "--output", metavar="FILE", text="File to write; printed if left out."),
     ] = None,
     no_plugins: NoPlugins = False,
 ) -> None:

@@ -8,16 +8,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from designer.cli.options import INTERRUPTED, NoPlugins, Template, output_option, path_of
+from designer.cli.options import INTERRUPTED, NoPlugins, Template, argument, output_option
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
 def sweep(
-    plan: Annotated[
-        Path, typer.Argument(parser=path_of, metavar="SWEEP", help="What to vary, a YAML file.")
-    ],
+    plan: Annotated[Path, argument("SWEEP", "What to vary, a YAML file.")],
     output: Annotated[Path | None, output_option("SWEEP.zarr", "STORE")] = None,
     workers: Annotated[
         int | None, typer.Option(min=1, max=1024, help="Processes; all processors if left out.")

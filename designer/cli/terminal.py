@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
-from rich.console import Console
+from rich.console import Console, RenderableType
 from rich.markup import escape
 from rich.progress import (
     BarColumn,
@@ -19,10 +19,12 @@ from rich.progress import (
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
+from rich.spinner import Spinner
 from rich.table import Table
 from rich.text import Text
 
 from designer.io.process import end_at_closed_pipe, is_terminal
+from designer.progress import Advance
 
 
 class _Console(Console):
@@ -46,9 +48,9 @@ _MOST_SEEN = 1000
 class _Teller:
     """Writes a line from time to time, also while nothing is heard of the work, in a thread."""
 
-    def __init__(self) -> None:
+    def __init__(self, text: str) -> None:
         self._began_s = self._told_s = time.monotonic()
-        self._text = ""
+        self._text = text
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
 
@@ -71,15 +73,17 @@ class _Teller:
             self(self._text)
 
 
-class ProgressBars:
-    """Context manager that shows one bar a task on standard error.
+class ProgressBars(Progress):
+    """Context manager that shows a bar for each task, and what is being done, on standard error.
 
-    Where nobody reads on a screen, a line is written from time to time.
+    It is called with the latter, a line at a time. Where nobody reads on a screen, a line is
+    written from time to time.
     """
 
-    def __init__(self) -> None:
-        self._teller = None if _notes.is_terminal else _Teller()
-        self._progress = Progress(
+    def __init__(self, text: str = "") -> None:
+        self._line = Spinner("dots", Text(text))
+        self._teller = None if _notes.is_terminal else _Teller(text)
+        super().__init__(
             SpinnerColumn(),
             TextColumn("{task.description:<10}", markup=False),
             BarColumn(),
@@ -90,27 +94,42 @@ class ProgressBars:
             disable=not _notes.is_terminal,
         )
 
-    def __enter__(self) -> ProgressBars:
-        self._progress.start()
+    def start(self) -> None:
+        """Begin to show."""
+        super().start()
         if self._teller is not None:
             self._teller.begin()
-        return self
 
-    def __exit__(self, *_: object) -> None:
-        self._progress.stop()
+    def stop(self) -> None:
+        """Leave the bars where they are, and nothing else."""
+        self._line.text = Text("")
+        super().stop()
         if self._teller is not None:
             self._teller.end()
 
+    def get_renderables(self) -> Iterator[RenderableType]:
+        """Yield the bars, and below them what is being done."""
+        if self.tasks:
+            yield from super().get_renderables()
+        if self._line.text:
+            yield self._line
+
+    def __call__(self, text: str) -> None:
+        """Tell what is being done."""
+        self._line.text = Text(text)
+        if self._teller is not None:
+            self._teller(text)
+
     @contextmanager
-    def task(self, name: str, total: int) -> Iterator[Callable[[int], None]]:
+    def task(self, name: str, total: int) -> Iterator[Advance]:
         """Open a task of ``total`` steps; yields the function that advances it."""
-        bar = self._progress.add_task(name, total=total)
+        bar = self.add_task(name, total=total)
         n_done, pace = 0, _Pace()
 
         def advance(steps: int) -> None:
             nonlocal n_done
             n_done += steps
-            self._progress.advance(bar, steps)
+            self.advance(bar, steps)
             share = min(n_done / max(total, 1), 1.0)
             left_s = pace.left_s(share)
             if self._teller is not None:
@@ -120,7 +139,7 @@ class ProgressBars:
         if self._teller is not None:
             self._teller(name)
         yield advance
-        self._progress.update(bar, completed=total, total=total)
+        self.update(bar, completed=total, total=total)
         if self._teller is not None:
             self._teller("")
 
@@ -145,38 +164,6 @@ class _Pace:
         earlier = [sample for sample in self._seen if sample[0] <= middle_s]
         then_s, then = earlier[-1]
         return (now_s - then_s) * (1.0 - share) / (share - then) if share > then else None
-
-
-class Spinner:
-    """Context manager that shows what is being tried; call it with a new text.
-
-    Where nobody reads on a screen, a line is written from time to time.
-    """
-
-    def __init__(self, text: str) -> None:
-        self._status = _notes.status(Text(text)) if _notes.is_terminal else None
-        self._teller = _Teller()
-        self._text = text
-
-    def __enter__(self) -> Spinner:
-        if self._status is not None:
-            self._status.start()
-        else:
-            self._teller(self._text)
-            self._teller.begin()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._status is not None:
-            self._status.stop()
-        self._teller.end()
-
-    def __call__(self, text: str) -> None:
-        """Show another text."""
-        if self._status is not None:
-            self._status.update(Text(text))
-        else:
-            self._teller(text)
 
 
 def bare_table(*headings: str, title: str | None = None) -> Table:

@@ -5,14 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
-from designer.cli.options import NEGATIVE_ANSWER, output_option
+from designer.cli.options import output_option
 
 
 def verify(
     output: Annotated[Path | None, output_option("none", "FILE.md")] = None,
-) -> None:
+) -> bool:
     """Compute what was published or computed by other programs, and put it beside theirs.
 
     Example:  designer verify -o verification.md
@@ -21,13 +19,13 @@ def verify(
     """
     from rich.markup import escape
 
-    from designer.cli.terminal import Spinner, announce_compiling, bare_table, show
+    from designer.cli.terminal import ProgressBars, announce_compiling, bare_table, show
     from designer.io.output import write_file
     from designer.reference.page import HEADINGS, cells, compute, markdown
 
     announce_compiling()
-    with Spinner("computing") as spinner:
-        computed = compute(spinner)
+    with ProgressBars("computing") as bars:
+        computed = compute(bars)
     for case, figures in computed:
         table = bare_table("", *HEADINGS, title=case.title)
         for figure in figures:
@@ -36,5 +34,4 @@ def verify(
     if output is not None:
         write_file(output, markdown(computed))
         show(f"{output} written.", markup=False)
-    if not all(figure.holds for _, figures in computed for figure in figures):
-        raise typer.Exit(NEGATIVE_ANSWER)
+    return all(figure.holds for _, figures in computed for figure in figures)

@@ -121,7 +121,7 @@ def test_lines_of_progress_where_nobody_looks(monkeypatch) -> None:
     clock, written = Clock(), io.StringIO()
     monkeypatch.setattr(terminal, "_notes", Console(file=written, force_terminal=False))
     monkeypatch.setattr(terminal.time, "monotonic", clock)
-    with terminal.Spinner("searching") as spinner:
+    with terminal.ProgressBars("searching") as spinner:
         for step in range(12):
             clock.now_s = float(step)
             spinner(f"step {step}")
