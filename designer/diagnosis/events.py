@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,9 +17,8 @@ from designer.diagnosis.structure import (
     channels_of,
     draws,
 )
+from designer.effects.load_step import LEAST_ROWS, best_step
 
-_LEAST_ROWS = 5
-"""On either side of a step or a knee, and readings that stand off: fewer have no pattern."""
 _MOST_ENDS = 500
 """Rows that stand off between which ranges are looked at."""
 _DRAWS = 299
@@ -30,18 +28,6 @@ _FULL_SLOPE = (0.75, 1.25)
 it; a gain, even one of half, keeps below."""
 _KNEES = np.linspace(0.5, 0.95, 10)
 """Quantiles of the prediction at which a range may end: half of the readings count as sound."""
-
-Common = tuple[float, float, str]
-"""Chance by accident, share of the readings that stand off, what they have in common."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Best:
-    """The best of many that were looked at: its share of variance, which one, in which channel."""
-
-    share: float
-    which: int
-    channel: int
 
 
 def find_events(
@@ -143,54 +129,48 @@ def find_common(
     """
     gone = is_outlier(residual)
     count = int(gone.sum())
-    if count < _LEAST_ROWS:
+    if count < LEAST_ROWS:
         return None
     off = np.asarray(gone.any(axis=1))
     kinds = (_of_a_sensor(gone, residual), _in_a_range(off, rows), _at_an_end(off, covariates))
-    common = [c for c in (min(kind, default=None) for kind in kinds) if c and c[0] < SIGNIFICANCE]
+    likeliest = (
+        min(kind, key=lambda e: (e.chance, e.fraction_of_variance, e.text), default=None)
+        for kind in kinds
+    )
+    common = [event for event in likeliest if event and event.chance < SIGNIFICANCE]
     if not common:
         return None
-    chances, shares, texts = zip(*common, strict=True)
-    text = f"the {count} readings that stand off: {', '.join(texts)}"
-    return Event(text, max(shares), min(chances))
+    text = f"the {count} readings that stand off: {', '.join(event.text for event in common)}"
+    share = max(event.fraction_of_variance for event in common)
+    return Event(text, share, min(event.chance for event in common))
 
 
 def _steps(residual: FloatArray, rows: IntArray) -> Iterator[Event]:
     channels = channels_of(residual)
-    if len(channels) < 4 * _LEAST_ROWS or not channels.size:
+    if len(channels) < 4 * LEAST_ROWS or not channels.size:
         return
-    best = _step_in(channels)
+    best = best_step(channels)
     # Of the variance a cubic over the rows explains that share: a drift is no step.
     channel = channels[:, best.channel]
     powers = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, len(channel)), 3)
     rest = channel - powers @ np.linalg.lstsq(powers, channel, rcond=None)[0]
     if best.share < float(1.0 - rest @ rest / (channel @ channel)):
         return
-    late = np.arange(len(channels))[:, None] >= best.which
+    late = np.arange(len(channels))[:, None] >= best.row
     means = [channels[side[:, 0]].mean(axis=0) for side in (~late, late)]
     # What a step explains does not last of itself.
     lasts = lasting(channels - np.where(late, means[1], means[0]))
     rng = np.random.default_rng(0)
-    by_accident = [_step_in(draw).share for draw in draws(channels, lasts, rng, _DRAWS)]
+    by_accident = [best_step(draw).share for draw in draws(channels, lasts, rng, _DRAWS)]
     (chance,) = chances_of(np.array([best.share]), by_accident)
-    yield Event(f"a step at row {rows[best.which]}", best.share, float(chance))
-
-
-def _step_in(channels: FloatArray) -> _Best:
-    """Return where one step explains most; channels have no mean (n_rows, n_channels)."""
-    n = len(channels)
-    at = np.arange(_LEAST_ROWS, n - _LEAST_ROWS + 1)
-    sums = np.cumsum(channels, axis=0)[at - 1]
-    share = sums**2 * (n / (at * (n - at)))[:, None] / np.sum(channels**2, axis=0)
-    which, channel = np.unravel_index(int(np.argmax(share)), share.shape)
-    return _Best(float(share[which, channel]), int(at[which]), int(channel))
+    yield Event(f"a step at row {rows[best.row]}", best.share, float(chance))
 
 
 def _ends(residual: FloatArray, predicted: FloatArray) -> Iterator[Event]:
     """Yield each reading that stops at a value while what is predicted goes on."""
     for channel, name in enumerate(channel_names(residual.shape[1] // 2)):
         is_read = ~np.isnan(residual[:, channel])
-        if is_read.sum() < 4 * _LEAST_ROWS:
+        if is_read.sum() < 4 * LEAST_ROWS:
             continue
         values, remainder = predicted[is_read, channel], residual[is_read, channel]
         for sign, end in ((1.0, "upper"), (-1.0, "lower")):
@@ -216,7 +196,7 @@ def _end_of(values: FloatArray, remainder: FloatArray, text: str) -> Event | Non
         beyond = np.maximum(values - knee, 0.0)
         beyond = beyond - beyond.mean()
         size = float(beyond @ beyond)
-        if np.sum(values > knee) >= _LEAST_ROWS and size > 0.0:
+        if np.sum(values > knee) >= LEAST_ROWS and size > 0.0:
             along = float(beyond @ centred)
             if along**2 / size > best:
                 best, slope, at = along**2 / size, along / size, float(knee)
@@ -229,17 +209,17 @@ def _end_of(values: FloatArray, remainder: FloatArray, text: str) -> Event | Non
     return Event(text, best / variance, float(min(1.0, chance)))
 
 
-def _of_a_sensor(gone: BoolArray, residual: FloatArray) -> Iterator[Common]:
+def _of_a_sensor(gone: BoolArray, residual: FloatArray) -> Iterator[Event]:
     is_read = ~np.isnan(residual)
     total = int(gone.sum())
     for channel, name in enumerate(channel_names(gone.shape[1] // 2)):
         inside = int(gone[:, channel].sum())
         share = is_read[:, channel].sum() / is_read.sum()
         chance = float(_chance(inside, total, share, gone.shape[1]))
-        yield chance, inside / total, f"{inside} are of {name}"
+        yield Event(f"{inside} are of {name}", inside / total, chance)
 
 
-def _in_a_range(off: BoolArray, rows: IntArray) -> Iterator[Common]:
+def _in_a_range(off: BoolArray, rows: IntArray) -> Iterator[Event]:
     places = np.flatnonzero(off)
     n = len(places)
     if n < 2:
@@ -255,17 +235,18 @@ def _in_a_range(off: BoolArray, rows: IntArray) -> Iterator[Common]:
     best = int(np.lexsort((n * width - inside, chance))[0])
     ends = f"{rows[places[starts[best]]]} to {rows[places[last[best]]]}"
     text = f"{inside[best]} of {n} rows from {ends}"
-    yield float(chance[best]), float(inside[best]) / n, text
+    yield Event(text, float(inside[best]) / n, float(chance[best]))
 
 
-def _at_an_end(off: BoolArray, covariates: Mapping[str, FloatArray]) -> Iterator[Common]:
+def _at_an_end(off: BoolArray, covariates: Mapping[str, FloatArray]) -> Iterator[Event]:
     n = int(off.sum())
     for name, column in covariates.items():
         for sign, end in ((1.0, "lower"), (-1.0, "upper")):
             is_there = sign * column <= np.nanquantile(sign * column, 0.25)
             inside = int(np.sum(off & is_there))
             chance = float(_chance(inside, n, np.mean(is_there), 2 * len(covariates)))
-            yield chance, inside / n, f"{inside} of {n} rows in the {end} quarter of {name}"
+            text = f"{inside} of {n} rows in the {end} quarter of {name}"
+            yield Event(text, inside / n, chance)
 
 
 def _chance(inside: ArrayLike, total: int, share: ArrayLike, looks: int) -> FloatArray:

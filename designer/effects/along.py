@@ -9,6 +9,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
+from designer.statics.geometry import cable_geometry
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,12 +34,10 @@ def pull_of(machine: Machine, measured: Measured, tension_N: FloatArray) -> Pull
     With H the horizontal force, w the weight per length, chord c over X and drop D: the upward
     force at the exit is H D / X + w c / 2, which with H makes the tension there.
     """
-    robot = machine.robot
-    chord = measured.poses.attachment_points_m(robot) - robot.exit_points_m
-    upright = chord @ robot.upright.T
-    across = np.maximum(np.hypot(upright[..., 0], upright[..., 1]), 1e-9)
-    slope = -upright[..., 2] / across
-    half = 0.5 * machine.cable.weight_N_per_m * np.linalg.norm(upright, axis=-1)
+    geometry = cable_geometry(machine.robot, measured.poses)
+    across = np.maximum(geometry.horizontal_distance_m, 1e-9)
+    slope = geometry.drop_m / across
+    half = 0.5 * machine.cable.weight_N_per_m * geometry.chord_m
     square, mixed = 1.0 + slope**2, slope * half
     inside = np.maximum(mixed**2 - square * (half**2 - tension_N**2), 0.0)
     level = np.maximum((np.sqrt(inside) - mixed) / square, 0.0)

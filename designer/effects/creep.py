@@ -10,6 +10,9 @@ from designer.effects.effect import Effect, Parameter, Readings, Size, Values
 from designer.model.measured_data import Measured
 from designer.units import NUMBER, TIME
 
+_STRAIN = Size(1e-4, bounds=(-0.05, 0.05), plausible=(0.0, 0.01))
+_ONSET = Size(50.0, bounds=(0.1, 1e7), plausible=(1.0, 1e6))
+
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
     assert measured.time_s is not None
@@ -24,16 +27,8 @@ EFFECT = Effect(
     law="unstrained length times 1 + c log10(1 + t/t0)",
     source="McKenna, Hearle and O'Hear, Handbook of Fibre Rope Technology, 2004",
     parameters=(
-        Parameter(
-            "strain_per_decade", NUMBER, Size(1e-4, bounds=(-0.05, 0.05), plausible=(0.0, 0.01))
-        ),
-        Parameter(
-            "onset_s",
-            TIME,
-            Size(50.0, bounds=(0.1, 1e7), plausible=(1.0, 1e6)),
-            neutral=100.0,
-            above=0.0,
-        ),
+        Parameter("strain_per_decade", NUMBER, _STRAIN),
+        Parameter("onset_s", TIME, _ONSET, neutral=100.0, above=0.0),
     ),
     on_readings=_change,
     needs=frozenset({"time", "length"}),

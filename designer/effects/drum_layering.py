@@ -6,7 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from designer.effects.effect import Effect, Parameter, Readings, Size, Values, frame_size_m
+from designer.effects.effect import (
+    Effect,
+    Parameter,
+    Readings,
+    Size,
+    Values,
+    frame_size_m,
+    per_cable,
+)
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.units import LENGTH, PER_LENGTH
@@ -18,10 +26,10 @@ def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
     A turn pays out 1 + gain · (reference - length) times what is counted, so the counted length
     is the integral of its inverse.
     """
-    n, gain = readings.length_m.shape[1], values["radius_gain_per_m"]
+    gain = values["radius_gain_per_m"]
     if abs(gain) < 1e-12:
         return readings
-    reference_m = np.array([values[f"reference_{k}_m"] for k in range(1, n + 1)])
+    reference_m = per_cable(values, "reference_{cable}_m", readings.length_m.shape[1])
     paid_out = np.maximum(1.0 + gain * (reference_m - readings.length_m), 1e-6)
     return replace(readings, length_m=reference_m - np.log(paid_out) / gain)
 

@@ -261,13 +261,8 @@ class Effect:
         if not self.can_have(machine):
             return []
         n_cables = machine.robot.n_cables
-        sized = tuple(p.sized(machine) for p in self.parameters)
-        effect = replace(
-            self,
-            parameters=tuple(
-                parameter for template in sized for parameter in template.of_cables(n_cables)
-            ),
-        )
+        effect = replace(self, parameters=tuple(p.sized(machine) for p in self.parameters))
+        effect = replace(effect, parameters=effect.parameters_for(n_cables))
         if self.takes_machine:
             effect = effect._given(machine=machine)
         if not self.takes_cable:
@@ -299,6 +294,11 @@ def as_built(machine: Machine, settings: Sequence[Setting]) -> Machine:
         if setting.effect.on_machine is not None:
             machine = setting.effect.on_machine(machine, setting.values)
     return machine
+
+
+def per_cable(values: Values, name: str, n_cables: int) -> FloatArray:
+    """Return what a parameter such as ``offset_{cable}_m`` is for each cable (n_cables,)."""
+    return np.array([values[name.format(cable=cable)] for cable in range(1, n_cables + 1)])
 
 
 def frame_size_m(machine: Machine) -> float:

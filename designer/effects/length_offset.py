@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
-from designer.effects.effect import Effect, Parameter, Readings, Size, Values
+from designer.effects.effect import Effect, Parameter, Readings, Size, Values, per_cable
 from designer.model.measured_data import Measured
 from designer.units import LENGTH
 
@@ -14,7 +12,7 @@ _SIZE = Size(0.01, bounds=(-1e3, 1e3), plausible=(-1.0, 1.0))
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
-    offsets = np.array([values[f"offset_{k}_m"] for k in range(1, readings.length_m.shape[1] + 1)])
+    offsets = per_cable(values, "offset_{cable}_m", readings.length_m.shape[1])
     return replace(readings, length_m=readings.length_m + offsets)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,8 +13,28 @@ from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.units import MASS, TIME
 
-_LEAST_ROWS = 5
+LEAST_ROWS = 5
 """On either side of a step: fewer have no mean to speak of."""
+
+
+class BestStep(NamedTuple):
+    """Where a step explains most: its share of the variance, its first row, its channel."""
+
+    share: float
+    row: int
+    channel: int
+
+
+def best_step(channels: FloatArray) -> BestStep:
+    """Return where one step explains most; channels have no mean (n_rows, n_channels)."""
+    n = len(channels)
+    at = np.arange(LEAST_ROWS, n - LEAST_ROWS + 1)
+    sums = np.cumsum(channels, axis=0)[at - 1]
+    share = (
+        sums**2 * (n / (at * (n - at)))[:, None] / np.maximum(np.sum(channels**2, axis=0), 1e-300)
+    )
+    which, channel = np.unravel_index(int(np.argmax(share)), share.shape)
+    return BestStep(float(share[which, channel]), int(at[which]), int(channel))
 
 
 def _change(machine: Machine, values: Values) -> Machine:
@@ -27,12 +48,10 @@ def _starts(measured: Measured, residual: FloatArray) -> tuple[dict[str, float],
     for kind in (residual[:, n:], residual[:, :n]):
         is_read = ~np.isnan(kind)
         rows = np.flatnonzero(is_read.any(axis=1))
-        if len(rows) < 2 * _LEAST_ROWS:
+        if len(rows) < 2 * LEAST_ROWS:
             continue
         mean = np.nan_to_num(kind).sum(axis=1)[rows] / is_read.sum(axis=1)[rows]
-        at = np.arange(_LEAST_ROWS, len(rows) - _LEAST_ROWS + 1)
-        gap = np.cumsum(mean - mean.mean())[at - 1] ** 2 / (at * (len(rows) - at))
-        row = rows[at[int(np.argmax(gap))]]
+        row = rows[best_step((mean - mean.mean())[:, None]).row]
         middle = 0.5 * (measured.time_s[row - 1] + measured.time_s[row])
         return ({"time_s": float(middle)},)
     return ()

@@ -9,7 +9,13 @@ from designer.effects.along import pull_of
 from designer.effects.effect import Effect, Parameter, Readings, Size, Values, frame_size_m
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
-from designer.model.robot import Robot
+from designer.model.robot import Poses, Robot
+from designer.statics.geometry import (
+    cable_geometry,
+    density_matrix,
+    plane_vector,
+    upright_exit_points_m,
+)
 from designer.units import COMPLIANCE
 
 _NOTHING = 1e-12
@@ -23,40 +29,28 @@ def _change(
     moved = values["compliance_m_per_N"] * pull.horizontal_N
     # The exit point moves along the level pull: the way is shorter by its share along the cable.
     share = pull.horizontal_N / np.maximum(readings.tension_N, 1e-9)
-    more_N = _rebalancing_N(machine.robot, measured, readings.tension_N, moved)
+    more_N = _rebalancing_N(machine.robot, measured.poses, readings.tension_N, moved)
     return Readings(readings.length_m - moved * share, readings.tension_N + more_N)
 
 
 def _rebalancing_N(
-    robot: Robot, measured: Measured, tension_N: FloatArray, moved_m: FloatArray
+    robot: Robot, poses: Poses, tension_N: FloatArray, moved_m: FloatArray
 ) -> FloatArray:
     """Return by how much tensions change where cables turn as their exit points move.
 
     The least change that keeps the balance of straight cables, to first order.
     """
-    chord = (measured.poses.attachment_points_m(robot) - robot.exit_points_m) @ robot.upright.T
-    level = chord * [1.0, 1.0, 0.0]
-    level = level / np.maximum(np.linalg.norm(level, axis=-1, keepdims=True), 1e-9)
-    lever = measured.poses.attachment_points_m(robot) - measured.poses.position_m[:, None]
-    before, after = _direction(chord), _direction(chord - moved_m[..., None] * level)
-    wrench = _wrench(after - before, lever @ robot.upright.T, robot)
-    balance = _wrench(before, lever @ robot.upright.T, robot)
-    lost = np.einsum("rcw,rc->rw", wrench, np.nan_to_num(tension_N))
-    gram = np.einsum("rcv,rcw->rvw", balance, balance)
+    geometry = cable_geometry(robot, poses)
+    moves = plane_vector(moved_m, np.zeros_like(moved_m), geometry.outward)
+    moved = cable_geometry(robot, poses, upright_exit_points_m(robot) + moves)
+    before, after = (
+        density_matrix(robot, way) / way.chord_m[..., None, :] for way in (geometry, moved)
+    )
+    lost = (after - before) @ np.nan_to_num(tension_N)[..., None]
+    gram = before @ np.swapaxes(before, -1, -2)
     ridge = _NOTHING * np.trace(gram, axis1=1, axis2=2)[:, None, None] * np.eye(gram.shape[-1])
-    share = np.linalg.solve(gram + ridge, lost[..., None])[..., 0]
-    return np.asarray(-np.einsum("rcw,rw->rc", balance, share))
-
-
-def _direction(chord: FloatArray) -> FloatArray:
-    return np.asarray(-chord / np.linalg.norm(chord, axis=-1, keepdims=True))
-
-
-def _wrench(force: FloatArray, lever: FloatArray, robot: Robot) -> FloatArray:
-    """Return force and moment of each cable (n_rows, n_cables, 3 or 6)."""
-    if robot.is_point_mass:
-        return force
-    return np.concatenate([force, np.cross(lever, force)], axis=-1)
+    share = np.linalg.solve(gram + ridge, lost)
+    return np.asarray(-(np.swapaxes(before, -1, -2) @ share)[..., 0])
 
 
 def _size(machine: Machine) -> Size:

@@ -12,6 +12,8 @@ from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.units import FORCE, NUMBER
 
+_STRAIN = Size(1e-4, bounds=(0.0, 0.05), plausible=(0.0, 0.01))
+
 
 def _change(
     readings: Readings, values: Values, measured: Measured, *, machine: Machine
@@ -40,12 +42,7 @@ EFFECT = Effect(
     law="strain is T/EA + ε (1 - exp(-T/T_toe))",
     source="Feyrer, Wire Ropes, 2015, section 2.3: rope moduli rise with stress",
     parameters=(
-        Parameter(
-            "toe_strain",
-            NUMBER,
-            Size(1e-4, bounds=(0.0, 0.05), plausible=(0.0, 0.01)),
-            at_least=0.0,
-        ),
+        Parameter("toe_strain", NUMBER, _STRAIN, at_least=0.0),
         Parameter("toe_tension_N", FORCE, _toe, above=0.0),
     ),
     on_readings=_change,

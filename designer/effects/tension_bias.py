@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
-from designer.effects.effect import Effect, Parameter, Readings, Size, Values
+from designer.effects.effect import Effect, Parameter, Readings, Size, Values, per_cable
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.units import FORCE
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
-    offsets = np.array([values[f"offset_{k}_N"] for k in range(1, readings.tension_N.shape[1] + 1)])
+    offsets = per_cable(values, "offset_{cable}_N", readings.tension_N.shape[1])
     return replace(readings, tension_N=readings.tension_N + offsets)
 
 
