@@ -15,12 +15,13 @@ from designer.measured.names import (
     POSITION,
     QUATERNION,
     ROTATION_VECTOR,
+    TIME_NAME,
     length_names,
     tension_names,
 )
 from designer.measured.rows import Rows, cell_faults, thinned, usable_rows
 from designer.measured.sense import sense_faults, unit_faults
-from designer.measured.surroundings import covariates, temperature_C, time_s, wind_m_per_s
+from designer.measured.surroundings import covariates, temperature_C, varying, wind_m_per_s
 from designer.measured.table import LogTable, read_table
 from designer.model.measured_data import Measured
 from designer.model.measurements import Measurements
@@ -142,7 +143,7 @@ def _measured(
     ]
     row_numbers = np.flatnonzero(mask).astype(np.int64) + 1
     row_numbers.setflags(write=False)
-    time = time_s(assigned, mask, notes)
+    time = varying(assigned, TIME_NAME, mask, notes)
     return Measured(
         poses=poses,
         length_m=frozen_array(_stacked(assigned, lengths, mask)),

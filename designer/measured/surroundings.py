@@ -6,20 +6,27 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.measured.assign import Assigned
-from designer.measured.names import TEMPERATURE_NAME, TIME_NAME, WIND
+from designer.measured.names import TEMPERATURE_NAME, WIND
 from designer.measured.rows import is_numeric
 
 
-def time_s(assigned: Assigned, mask: BoolArray, notes: list[str]) -> FloatArray | None:
-    """Return the time of each row [s]; None where it is not recorded or always the same."""
-    return _varying(assigned, TIME_NAME, mask, notes)
+def varying(assigned: Assigned, name: str, mask: BoolArray, notes: list[str]) -> FloatArray | None:
+    """Return one of our columns (n_kept,); None, and a note, where it is always the same."""
+    column = assigned.ours.get(name)
+    if column is None:
+        return None
+    values = frozen_array(column.values[mask])
+    if flaw := _flaw(values):
+        notes.append(f"{column.name} left out, {flaw}")
+        return None
+    return values
 
 
 def temperature_C(
     assigned: Assigned, mask: BoolArray, time: FloatArray | None, notes: list[str]
 ) -> FloatArray | None:
     """Return the temperature in each row [°C]; None where not recorded or always the same."""
-    values = _varying(assigned, TEMPERATURE_NAME, mask, notes)
+    values = varying(assigned, TEMPERATURE_NAME, mask, notes)
     if values is None:
         return None
     return _filled(values, time, assigned.ours[TEMPERATURE_NAME].name, notes)
@@ -39,9 +46,9 @@ def wind_m_per_s(
         else:
             notes.append(f"the wind is taken as horizontal: there is no {name}")
     names = ", ".join(column.name for column in present.values())
-    is_empty = np.isnan(wind).all(axis=0).any()
-    if is_empty or all(_is_constant(component) for component in wind.T):
-        notes.append(f"{names} left out, {'one is empty' if is_empty else 'the same in all rows'}")
+    flaws = [_flaw(component) for component in wind.T]
+    if "empty" in flaws or all(flaws):
+        notes.append(f"{names} left out, {'one is empty' if 'empty' in flaws else flaws[0]}")
         return None
     filled = [_filled(wind[:, axis], time, name, notes) for axis, name in enumerate(WIND)]
     return frozen_array(np.stack(filled, axis=1))
@@ -53,40 +60,23 @@ def covariates(assigned: Assigned, mask: BoolArray, notes: list[str]) -> dict[st
     used: dict[str, FloatArray] = {}
     for name, column in assigned.covariates.items():
         values = column.values[mask]
-        reason = _reason(values, is_text=not is_numeric(column) and not column.is_empty)
-        if reason:
+        is_text = not is_numeric(column) and not column.is_empty
+        flaw = _flaw(values)
+        if is_text or flaw:
+            reason = "they hold text" if is_text else f"they are {flaw}"
             reasons.setdefault(reason, []).append(name)
         else:
             used[name] = frozen_array(values)
-    notes += [f"left out, {reason}: {', '.join(names)}" for reason, names in reasons.items()]
+    notes += [f"left out, since {reason}: {', '.join(names)}" for reason, names in reasons.items()]
     return used
 
 
-def _reason(values: FloatArray, *, is_text: bool) -> str:
-    """Return why a column is of no use; empty where it is."""
-    if is_text:
-        return "since they hold text"
-    if np.isnan(values).all():
-        return "since they are empty"
-    return "since they are the same in all rows" if _is_constant(values) else ""
-
-
-def _is_constant(values: FloatArray) -> bool:
+def _flaw(values: FloatArray) -> str:
+    """Return why values tell nothing; empty where they differ from row to row."""
     present = values[~np.isnan(values)]
-    return len(present) == 0 or bool(np.ptp(present) == 0.0)
-
-
-def _varying(assigned: Assigned, name: str, mask: BoolArray, notes: list[str]) -> FloatArray | None:
-    """Return one of our columns; None, and a note, where it is always the same."""
-    column = assigned.ours.get(name)
-    if column is None:
-        return None
-    values = frozen_array(column.values[mask])
-    if _is_constant(values):
-        why = "empty" if np.isnan(values).all() else "the same in all rows"
-        notes.append(f"{column.name} left out, {why}")
-        return None
-    return values
+    if not present.size:
+        return "empty"
+    return "the same in all rows" if np.ptp(present) == 0.0 else ""
 
 
 def _filled(values: FloatArray, time: FloatArray | None, name: str, notes: list[str]) -> FloatArray:
