@@ -137,3 +137,18 @@ def test_outlines_from_above_and_from_the_side() -> None:
     triangle = Prism(frozen_array([[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]]), (1.0, 2.0))
     assert triangle.outline_m([0, 1]) is triangle.polygon_m
     assert triangle.outline_m([0, 2]).tolist() == [[0, 1], [4, 1], [4, 2], [0, 2]]
+
+
+def test_points_inside_are_spread_evenly_over_the_polygon() -> None:
+    """All of them lie in it, and each half of a square has half of them."""
+    square = Prism(frozen_array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]), (1.0, 3.0))
+    points = square.inside_m(np.random.default_rng(0), 4000)
+    assert square.contains(points).all()
+    assert (points < [1.0, 1.0, 2.0]).mean(axis=0) == pytest.approx([0.5, 0.5, 0.5], abs=0.03)
+
+
+def test_the_frame_of_a_rectangle_spans_its_corners() -> None:
+    rectangle = Rectangle.over([[1.0, 2.0], [4.0, 6.0]], 0.0, (-1.0, 2.0))
+    frame = rectangle.frame()
+    corners = frame.origin_m + np.stack([frame.low[0], frame.high[0]]) @ frame.axes.T
+    assert corners == pytest.approx(np.array([[1.0, 2.0, -1.0], [4.0, 6.0, 2.0]]))

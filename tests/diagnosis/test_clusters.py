@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from designer.diagnosis.statistics import Lasting, lasting, score_covariances
+from designer.diagnosis.statistics import Lasting, is_outlier, lasting, score_covariances
 
 ROWS, CHANNELS = 120, 6
 
@@ -32,6 +32,15 @@ def test_channels_that_share_an_error_count_once() -> None:
     of_rows, _, of_both = score_covariances(np.ones((ROWS, CHANNELS, 1)), shared)
     for found in (of_rows, of_both):
         assert found[0, 0] == pytest.approx(ROWS * CHANNELS**2, rel=0.35)
+
+
+def test_an_outlier_stands_off_by_five_spreads_and_by_five_times_the_noise() -> None:
+    bulk = np.linspace(-1.0, 1.0, 41)  # its spread is 0.74
+    quiet, loud = np.append(0.1 * bulk, [4.0, 6.0]), np.append(4.0 * bulk, [10.0, 20.0])
+    residual = np.column_stack([quiet, loud])
+    found = is_outlier(residual)
+    assert found[-1].all()
+    assert not found[:-1].any()
 
 
 def test_deviation_of_an_offset_under_lasting_noise() -> None:

@@ -60,6 +60,11 @@ def test_a_slider_keeps_the_unit(text: str, value_SI: float, becomes: str, yard:
     assert _of(yard, "robot.platform.mass").text_of(value_SI) == becomes
 
 
+def test_a_slider_goes_from_a_quarter_of_a_modulus_to_four_times(yard: Session) -> None:
+    modulus = _of(yard, "cable.youngs_modulus")
+    assert (modulus.low, modulus.high) == pytest.approx((62.7e9 / 4.0, 4.0 * 62.7e9))
+
+
 def test_a_temperature_has_its_own_zero(yard: Session) -> None:
     yard.edit("surroundings.temperature", "50 degF")
     one = _of(yard, "surroundings.temperature")

@@ -77,6 +77,15 @@ def test_a_plane(tmp_path, plane: str, normal, position_m, limits_m) -> None:
     assert robot.limits_m == limits_m
 
 
+@pytest.mark.parametrize(("n_cables", "has_choice"), [(3, False), (4, True)])
+def test_three_cables_hold_a_platform_in_a_plane(tmp_path, n_cables: int, has_choice: bool) -> None:
+    """It moves in two ways and turns in one: only a fourth cable leaves a tension to choose."""
+    joint = 'type="PLANAR_XZ" q_initial="1 2 0" q_min="-1 1 -3" q_max="1 3 3"'
+    held = cables(EXITS[:n_cables], HELD[:n_cables])
+    robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=joint)), held))
+    assert robot.has_choice is has_choice
+
+
 def test_angles_are_taken_where_they_are_understood(tmp_path) -> None:
     turned = 'type="SPATIAL_EULER_XYZ" q_initial="0 0 2 0.1 0.2 0.3"'
     robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=turned)), cables()))

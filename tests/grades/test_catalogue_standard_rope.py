@@ -53,6 +53,13 @@ def test_mass_and_metallic_area_follow_their_factors():
     assert grade.metallic_area_m2(size) == pytest.approx(0.460 * 400.0e-6)
 
 
+@pytest.mark.parametrize("factors", FACTORS, ids=lambda one: f"{one.construction}-{one.core}")
+def test_factors_are_those_of_steel_wire(factors):
+    """Laying costs up to three tenths of its strength; core and lubricant add to its 7850 kg/m³."""
+    assert 0.7 < factors.breaking_force / factors.metallic_area < 0.95
+    assert 7850.0 < 1e4 * factors.mass / factors.metallic_area < 10_000.0
+
+
 @pytest.mark.parametrize(
     ("construction", "core", "wire_grade", "product"),
     [

@@ -169,6 +169,14 @@ class TestServed:
         assert f"not served {share} %" in found
         assert not any(text.startswith("serves all") for text in found)
 
+    @pytest.mark.parametrize("kind", ["served", "partly"])
+    def test_shares_are_of_all_poses(self, kind: str) -> None:
+        served = maps_of(kind).served
+        for share in (served.share, served.massless_share):
+            assert (np.diff(share) > 0.0).all()
+            assert 0.0 < share[0] <= share[-1] <= 1.0
+        assert served.share[-1] + served.unserved == pytest.approx(1.0)
+
     def test_where_neither_serves_all(self) -> None:
         served = replace(maps_of("partly").served, massless_needed_m=np.nan)
         nothing = np.empty(0)
