@@ -298,6 +298,9 @@ def test_sizes_beside_and_the_same_again() -> None:
     assert down < own < up
     assert finite(uncertainty_dict(one)) == finite(uncertainty_dict(same))
     np.testing.assert_array_equal(one.chosen.utilisation, same.chosen.utilisation)
+    used, reported = one.chosen.utilisation, uncertainty_dict(one)["utilisation"]
+    shares = [np.mean(used <= reported[name]) for name in ("p05", "median", "p95", "largest")]
+    assert shares == pytest.approx([0.05, 0.5, 0.95, 1.0], abs=0.005)
     other = odds(replace(study, uncertainty=replace(asked, seed=1)), chosen)
     assert not np.array_equal(one.chosen.utilisation, other.chosen.utilisation)
 

@@ -36,6 +36,10 @@ def test_every_value_put_in_as_it_stands_changes_nothing(name: str) -> None:
         assert with_value(text, keys, written) == text
 
 
+def test_a_field_that_goes_leaves_an_empty_line_above_it() -> None:
+    assert without("\na: 1\nb: 2\n", ("a",)) == "\nb: 2\n"
+
+
 ALIASES = """\
 a: &mast
   height: &h 7.2 m   # of all

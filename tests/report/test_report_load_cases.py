@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from designer.analysis.result_json import result_dict
 from designer.cli.tables import summary_rows
 from designer.documents.plain import json_text
 from designer.model.requirement import State
+from designer.report.design.first_page import Unmet
 from designer.report.design.report import section as section_of
 from designer.report.design.source import Source, source_of
 
@@ -182,3 +184,8 @@ def test_without_a_selection_the_diameter_of_each_case_is_told(
     assert any("storm" in label for label, _ in summary_rows(found))
     assert found.qualities is not None
     assert f"{1e3 * storm:.1f} mm" in found.qualities.cable.name
+
+
+def test_what_is_not_met_is_said_of_the_load_case_that_is_furthest_from_it() -> None:
+    cases = [SimpleNamespace(utilisation=utilisation) for utilisation in (np.nan, 1.1, 1.4, 1.2)]
+    assert Unmet(tuple(cases)).requirement is cases[2]
