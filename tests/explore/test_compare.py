@@ -49,6 +49,7 @@ def test_a_heavier_load(few: Session) -> None:
     lines = {one.title: one for one in found.lines}
     worse = ["Diameter needed here", "Utilisation at worst", "Diameter needed at worst"]
     assert all(lines[title].difference > 0.0 for title in worse)
+    assert "Mass of all cables, best rope" in lines
     in_SI = {"mm": 1e-3, "kN": 1e3, "kN/m": 1e3, "kg": 1.0, "%": 0.01}
     assert all(line.scale * in_SI[line.unit] == pytest.approx(1.0) for line in found.lines)
     assert Rope(WIRE, "7/32 in") in found.lost
