@@ -63,4 +63,4 @@ def seven_poses(count: int, seed: int = 0) -> Poses:
 
 def one(poses: Poses, k: int) -> Poses:
     """Return one pose of a batch, without leading axes."""
-    return Poses(poses.position_m[k], poses.rotation[k] if poses.rotation.ndim > 2 else np.eye(3))
+    return poses.part(k)

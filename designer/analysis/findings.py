@@ -19,7 +19,7 @@ from designer.model.workspace import HangsBelow, Workspace
 from designer.selection.candidate import Candidate
 from designer.selection.result import GradeOutcome
 from designer.selection.verify import Verification, verify
-from designer.sizing.limit import limit_ratio
+from designer.sizing.newton import limit_ratio
 from designer.statics.inverse import solve_sagging
 from designer.statics.sizes import is_quick
 from designer.workspace.demand import is_left_out

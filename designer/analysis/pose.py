@@ -9,9 +9,8 @@ import numpy as np
 
 from designer.errors import InputError
 from designer.model.cable import Material
-from designer.sizing.limit import limit_ratio
 from designer.sizing.loop import LoopSizing, size_by_loop
-from designer.sizing.newton import Sizing, size_poses
+from designer.sizing.newton import Sizing, limit_ratio, size_poses
 from designer.statics.inverse import MasslessStatics, solve_massless
 from designer.statics.rest import RestingPlaces, resting_places
 from designer.study import Study, as_built_by, require_enough_cables

@@ -19,7 +19,6 @@ from designer.diagnosis.statistics import block_of, is_outlier, rms, without_out
 from designer.effects.effect import Setting
 from designer.model.robot import Poses
 from designer.statics.forward import solve_forward
-from designer.statics.task import part_of
 
 _DRAWS = 400
 """Of the bootstrap: the ends of a 95 % interval scatter by a thirtieth of its width."""
@@ -204,7 +203,7 @@ def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -
     true = problem.predict.true_readings(settings, problem.noise)
     built = problem.predict.built(settings)
     force = added_force_N(built, measured)
-    poses = part_of(measured.poses, rows)
+    poses = measured.poses.part(rows)
     forward_statics = solve_forward(
         built.robot, built.cable, true.length_m[rows], poses, None if force is None else force[rows]
     )

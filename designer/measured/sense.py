@@ -103,7 +103,7 @@ def sense_faults(
     """
     faults = []
     poses = measured.poses
-    rotation = np.broadcast_to(poses.rotation, (measured.n_rows, 3, 3)).reshape(-1, 9)
+    rotation = poses.rotations.reshape(-1, 9)
     places = np.round(np.hstack([poses.position_m, rotation]) / 1e-6)  # nearer is the same
     if (count := len(np.unique(places, axis=0))) < FEWEST_POSES:
         problem = f"the rows are at {count} different poses"

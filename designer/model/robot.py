@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
 from designer import checked
-from designer.arrays import FloatArray, IntArray, frozen_array
+from designer.arrays import BoolArray, FloatArray, IntArray, frozen_array
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 
 
@@ -319,6 +319,25 @@ class Poses:
     def shape(self) -> tuple[int, ...]:
         """Leading axes of the batch."""
         return self.position_m.shape[:-1]
+
+    @property
+    def rotations(self) -> FloatArray:
+        """The rotation of each pose (..., 3, 3), also where all have one."""
+        return np.broadcast_to(self.rotation, (*self.shape, 3, 3))
+
+    @property
+    def flat(self) -> Poses:
+        """The poses with one leading axis."""
+        count = int(np.prod(self.shape, dtype=np.int64))
+        rotation = self.rotation
+        if rotation.ndim > 2:
+            rotation = self.rotations.reshape(-1, 3, 3)
+        return Poses(self.position_m.reshape(count, 3), rotation)
+
+    def part(self, chosen: int | slice | IntArray | BoolArray) -> Poses:
+        """Return some of poses (n_poses,)."""
+        rotation = self.rotation if self.rotation.ndim == 2 else self.rotation[chosen]
+        return Poses(self.position_m[chosen], rotation)
 
     def attachment_points_m(self, robot: Robot) -> FloatArray:
         """Return the attachment points in the world frame (..., n_cables, 3) [m]."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
+from designer.model.region import BoxFrame
 from designer.model.space import Space
 
 
@@ -16,28 +17,22 @@ class Cover:
 
     Parameters
     ----------
-    origin_m : array (3,)
-        Position where all coordinates are zero [m].
-    axes : array (3, 3)
-        Its change with each of them, columns.
+    frame : BoxFrame
+        What the coordinates of positions are.
     low, high : array (n_boxes, 3 or 6)
         Boxes that cover it at the start [m or share, rad].
-    sides : array (n_sides, 3)
-        It is where ``sides[:, :2] @ coordinates[:2] + sides[:, 2]`` ≤ 0; none for a box.
     turn_rad : array (3,)
         Orientation, where that is no coordinate [rad].
     """
 
-    origin_m: FloatArray
-    axes: FloatArray
+    frame: BoxFrame
     low: FloatArray
     high: FloatArray
-    sides: FloatArray
     turn_rad: FloatArray
 
     def places(self, coordinates: FloatArray) -> FloatArray:
         """Return the places (n, 6) of coordinates (n, 3 or 6) [m, rad]."""
-        position = self.origin_m + coordinates[:, :3] @ self.axes.T
+        position = self.frame.origin_m + coordinates[:, :3] @ self.frame.axes.T
         turn = coordinates[:, 3:]
         if turn.shape[1] == 0:
             turn = np.broadcast_to(self.turn_rad, position.shape)
@@ -60,7 +55,7 @@ class Cover:
         """
         x, y = np.stack([low[:, :2], high[:, :2]], axis=-1).transpose(1, 0, 2)
         plan = np.stack([x[:, [0, 1, 1, 0]], y[:, [0, 0, 1, 1]]], axis=-1)
-        for side in self.sides:
+        for side in self.frame.sides:
             plan = _cut_at(plan, side)
         low, high = low.copy(), high.copy()
         with np.errstate(invalid="ignore"):
@@ -103,7 +98,7 @@ def covers_of(space: Space) -> list[Cover]:
         if ends is not None:
             low = np.hstack([low, np.broadcast_to(ends[0], low.shape)])
             high = np.hstack([high, np.broadcast_to(ends[1], high.shape)])
-        made.append(Cover(frame.origin_m, frame.axes, low, high, frame.sides, turn))
+        made.append(Cover(frame, low, high, turn))
     return made
 
 

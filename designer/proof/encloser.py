@@ -82,7 +82,7 @@ class Encloser:
             inverse_weight=1.0 / weight,
             reach=self._reach,
             fuzz=self._fuzz,
-            axes=plain(robot.upright @ cover.axes),
+            axes=plain(robot.upright @ cover.frame.axes),
             level=1.0,
         )
 
@@ -108,7 +108,7 @@ class Encloser:
         steps = 2.0 ** np.ceil(np.log2(np.clip(raised, _LEAST_RAISE, _MOST_RAISE)))
         pull, solved, follow = self._pulls(middle, half, steps)
         upright = upright_poses(self._robot, Poses.at(self.cover.places(middle)))
-        rotation = np.broadcast_to(upright.rotation, (len(middle), 3, 3))
+        rotation = upright.rotations
         levers = np.einsum("bij,nj->bni", rotation, self._robot.attachments_m)
         start = upright_exit_points_m(self._robot)
         arm = rotation @ self._robot.platform.centre_of_mass_m

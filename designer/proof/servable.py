@@ -154,7 +154,7 @@ class _Part:
         from scipy.optimize import linprog
 
         robot, poses = self._robot, upright_poses(self._robot, Poses.at(places))
-        rotation = np.broadcast_to(poses.rotation, (len(places), 3, 3))[0]
+        rotation = poses.rotations[0]
         levers = robot.attachments_m @ rotation.T
         reach = float(np.linalg.norm(levers, axis=1).max()) or 1.0
         vectors = upright_exit_points_m(robot) - poses.position_m[:, None] - levers

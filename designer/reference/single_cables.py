@@ -69,19 +69,11 @@ def _upper_end_N(line: Line) -> tuple[float, float]:
     return float(force_x), float(weight * length - force_z)
 
 
-def _closed_form() -> Sequence[Figure]:
+def _lines(source: int, wrong: str = "") -> Sequence[Figure]:
     return [
-        Figure(f"{name}, {end}", "N", their, ours, 1e-9)
-        for name, line, theirs, _ in LINES
-        for end, their, ours in zip("HV", theirs, _upper_end_N(line), strict=True)
-    ]
-
-
-def _moorpy() -> Sequence[Figure]:
-    return [
-        Figure(f"{name}, {end}", "N", their, ours, None if name == WRONG_IN_MOORPY else 1e-9)
-        for name, line, _, theirs in LINES
-        for end, their, ours in zip("HV", theirs, _upper_end_N(line), strict=True)
+        Figure(f"{name}, {end}", "N", their, ours, None if name == wrong else 1e-9)
+        for name, line, *theirs in LINES
+        for end, their, ours in zip("HV", theirs[source], _upper_end_N(line), strict=True)
     ]
 
 
@@ -129,14 +121,14 @@ CASES = (
         "H. M. Irvine, Cable Structures, MIT Press, 1981; evaluated in 40 digits",
         "Seven suspended cables, from slack to nearly taut. H: horizontal force; V: vertical force "
         "at the upper end, with the whole weight of the cable.",
-        _closed_form,
+        partial(_lines, 0),
     ),
     ReferenceCase(
         "The same cables in MoorPy",
         "MoorPy 1.3.0, function catenary, tolerance 1e-9 m, far above the sea bed",
         f"At '{WRONG_IN_MOORPY}' MoorPy falls back on a straight line without weight and reports "
         "no error; the closed form above tells which is right.",
-        _moorpy,
+        partial(_lines, 1, WRONG_IN_MOORPY),
     ),
     ReferenceCase(
         "A heavy cable between fixed ends",

@@ -1,4 +1,4 @@
-"""Sizing by batched, compiled Newton: what the workspace sweep uses."""
+"""Sizing by batched, compiled Newton, and how near a pose is to having no finite cable at all."""
 
 from __future__ import annotations
 
@@ -60,12 +60,7 @@ def size_poses(
     another branch might be thinner, `designer.kernel.search` tries more of them, unless
     it is not to ``seeks_better`` than what was found first.
     """
-    task = Task(
-        np.expand_dims(material.elastic_compliance_per_m, -1),
-        np.expand_dims(material.strength_length_m, -1),
-        None,
-        sag_max=robot.family_sag_max,
-    )
+    task = _task(robot, material, None)
     solution, run = solve_task(robot, poses, task, seeks_better=seeks_better)
     area = solution.weight_N_per_m / (STANDARD_GRAVITY_M_PER_S2 * material.density_kg_per_m3)
     massless_area = solution.massless_tension_N / material.allowable_stress_Pa
@@ -78,4 +73,32 @@ def size_poses(
         closure_residual_m=solution.closure_residual_m.reshape(shape),
         equilibrium_residual_N=solution.equilibrium_residual_N.reshape(shape),
         is_thinnest=((solution.verdict == Verdict.SOLVED) & robot.has_one_branch).reshape(shape),
+    )
+
+
+def limit_ratio(robot: Robot, poses: Poses, material: Material) -> FloatArray:
+    """Return the stress at infinite section over the allowable stress, for each pose (...).
+
+    As the section grows, the platform's weight stops mattering: the cables hang between the exit
+    points and a weightless platform, and their stress tends to a value that depends on geometry
+    and ρ g only. The margin to the boundary of the workspace is 1 minus this ratio: below 1, a
+    finite cable exists. At or above 1 none does where the taut cable sets the ratio; where it is
+    the slack one, pulling it up may still help, which the verdict of the sizing decides.
+
+    With more cables than degrees of freedom it is the least ratio that any internal forces reach.
+
+    NaN where that limit was not solved.
+    """
+    solution, _ = solve_task(robot, poses, _task(robot, material, 0.0))
+    return solution.load_factor.reshape(poses.shape)
+
+
+def _task(
+    robot: Robot, material: Material | MaterialsByPose, inverse_m_per_N: float | None
+) -> Task:
+    return Task(
+        np.expand_dims(material.elastic_compliance_per_m, -1),
+        np.expand_dims(material.strength_length_m, -1),
+        inverse_m_per_N,
+        sag_max=robot.family_sag_max,
     )

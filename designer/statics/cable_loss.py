@@ -103,7 +103,7 @@ def settle(
     fate = np.where(before.is_solved, Fate.FALLS, Fate.NOT_HELD).astype(np.int64)
     tension = np.full((count, robot.n_cables), np.nan)
     position = np.full((count, 3), np.nan)
-    rotation = np.array(np.broadcast_to(poses.rotation, (count, 3, 3)))
+    rotation = np.array(poses.rotations)
     every = np.arange(robot.n_cables)
     remaining = every if lost is None else np.delete(every, lost - 1)
     start = Poses(poses.position_m[at], rotation[at])

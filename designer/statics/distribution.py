@@ -29,7 +29,6 @@ from designer.statics.geometry import (
     upright_situation,
 )
 from designer.statics.pulleys import straight_run
-from designer.statics.task import flat_poses
 
 _PROVEN = 1e-6
 """Residual of the optimality conditions up to which they count as met."""
@@ -111,7 +110,7 @@ def distribute_evenly(
     from designer.kernel.batch import solve_massless_batch
 
     shares = _shares(robot, poses, tension_max_N, force_N)
-    flat = flat_poses(poses)
+    flat = poses.flat
     if force_N is not None:
         force_N = np.broadcast_to(force_N, poses.position_m.shape).reshape(-1, 3)
     points = straight_run(robot, flat).exit_points_m

@@ -75,10 +75,11 @@ def resting_places(
         Unstrained lengths in it [m].
     """
     spread = spread_poses(robot, _STARTS)
-    rotation = np.broadcast_to(spread.rotation, (_STARTS, 3, 3))
     starts = Poses(
         np.concatenate([pose.position_m[None], spread.position_m]),
-        pose.rotation if robot.is_point_mass else np.concatenate([pose.rotation[None], rotation]),
+        pose.rotation
+        if robot.is_point_mass
+        else np.concatenate([pose.rotation[None], spread.rotations]),
     )
     equilibria = find_equilibria(robot, cable, length_m, starts)
     own_place = equilibria.which[0]

@@ -13,7 +13,6 @@ from designer.model.robot import Poses, Robot
 from designer.progress import checkpoint
 from designer.statics.geometry import upright_exit_points_m, upright_situation
 from designer.statics.inverse import solve_sagging
-from designer.statics.task import part_of
 
 _SHARE = 64
 """Sizes that one thread takes at a time; the first of them starts without a neighbour."""
@@ -111,7 +110,7 @@ def add_slowly(
         The poses to solve; all if left out.
     """
     at = np.arange(len(poses.position_m)) if indices is None else indices
-    part = part_of(poses, at)
+    part = poses.part(at)
     statics = solve_sagging(robot, part, cable, seeks_better=not is_quick(robot))
     if is_quick(robot) and (statics.largest_tension_N > cable.allowable_tension_N).any():
         statics = solve_sagging(robot, part, cable)

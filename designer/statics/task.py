@@ -79,15 +79,6 @@ class Task:
         return replace(self, **changed) if changed else self
 
 
-def flat_poses(poses: Poses) -> Poses:
-    """Return poses (...) with one leading axis."""
-    count = int(np.prod(poses.shape, dtype=np.int64))
-    rotation = poses.rotation
-    if rotation.ndim > 2:
-        rotation = np.broadcast_to(rotation, (*poses.shape, 3, 3)).reshape(-1, 3, 3)
-    return Poses(poses.position_m.reshape(count, 3), rotation)
-
-
 def solve_task(
     robot: Robot, poses: Poses, task: Task, *, seeks_better: bool = True
 ) -> tuple[Solution, PulleyRun]:
@@ -97,7 +88,7 @@ def solve_task(
     better than what is. Where none keeps the largest sag, the answer is one that does not.
     """
     checkpoint()
-    flat = flat_poses(poses)
+    flat = poses.flat
     count = len(flat.position_m)
     force = None if task.force_N is None else np.broadcast_to(task.force_N, poses.position_m.shape)
     task = replace(task, force_N=None if force is None else force.reshape(count, 3))
@@ -165,7 +156,7 @@ def _solve_over_pulleys(
     if len(at) > 0:
         again = _solve_over_pulleys(
             robot,
-            part_of(flat, at),
+            flat.part(at),
             task.part(at),
             is_thorough=is_thorough,
             rates_branches=rates_branches,
@@ -210,7 +201,7 @@ def _try_other_branches(
     )
     if len(at) == 0 or np.any(task.inverse_weight_m_per_N == 0.0):
         return
-    poses = part_of(flat, at)
+    poses = flat.part(at)
     again, its_run = _solve_over_pulleys(
         robot, poses, task.part(at), is_thorough=True, rates_branches=False
     )
@@ -250,7 +241,7 @@ def _let_hang(
     at = np.flatnonzero(hangs)
     if len(at) > 0:
         slack = replace(task.part(at), sag_max=None)
-        poses = part_of(flat, at)
+        poses = flat.part(at)
         _replace(solution, run, at, *solve_task(robot, poses, slack, seeks_better=seeks_better))
     return hangs
 
@@ -262,7 +253,7 @@ def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -
     unsolved = np.flatnonzero(solution.verdict != Verdict.SOLVED)
     if len(unsolved) == 0:
         return
-    poses = part_of(flat, unsolved)
+    poses = flat.part(unsolved)
     points = straight_run(robot, poses).exit_points_m
     situation = upright_situation(robot, poses, points, task.part(unsolved).force_N)
     is_near, least_N = np.zeros(len(unsolved), dtype=np.bool_), robot.tension_min_N
@@ -288,9 +279,3 @@ def _between_tangents(robot: Robot, level: CableGeometry, situation: Situation) 
         exit_points=plain(np.concatenate([situation.exit_points, lower], axis=1)),
         attachments=plain(np.tile(situation.attachments, (2, 1))),
     )
-
-
-def part_of(poses: Poses, chosen: IntArray) -> Poses:
-    """Return some of poses (n_poses,)."""
-    rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[chosen]
-    return Poses(poses.position_m[chosen], rotation)

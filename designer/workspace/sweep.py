@@ -19,8 +19,7 @@ from designer.model.space import turn_of
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.progress import Advance
-from designer.sizing.limit import limit_ratio
-from designer.sizing.newton import Sizing, size_poses
+from designer.sizing.newton import Sizing, limit_ratio, size_poses
 from designer.workspace.demand import (
     diameter_demand,
     is_left_out,

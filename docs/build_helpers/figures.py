@@ -10,8 +10,7 @@ from designer.arrays import frozen_array
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.robot import Platform, Poses, Robot
 from designer.physics.catenary import end_tensions_N, forces_from_length, position_m
-from designer.sizing.limit import limit_ratio
-from designer.sizing.newton import size_poses
+from designer.sizing.newton import limit_ratio, size_poses
 
 
 def draw_all(folder):

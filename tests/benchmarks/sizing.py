@@ -138,15 +138,12 @@ def seconds_per_pose(work: Callable[[], object], count: int, repeats: int = 3) -
 
 
 def one(poses: Poses, k: int) -> Poses:
-    rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[k]
-    return Poses(poses.position_m[k], rotation)
+    return poses.part(k)
 
 
 def in_chunks(solve: Callable[[Poses], object], poses: Poses) -> None:
     for at in range(0, len(poses.position_m), CHUNK):
-        part = slice(at, at + CHUNK)
-        rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[part]
-        solve(Poses(poses.position_m[part], rotation))
+        solve(poses.part(slice(at, at + CHUNK)))
 
 
 def compare(name: str, robot: Robot, poses: Poses, n_baseline: int) -> None:

@@ -24,7 +24,7 @@ def _halved(cover: Cover, times: int) -> tuple[FloatArray, FloatArray, FloatArra
     low, high, corners = cover.cut(cover.low, cover.high)
     for turn in range(times):
         d = [0, 2, 1][turn % 3]
-        if cover.axes[:, d].max() == 0.0:
+        if cover.frame.axes[:, d].max() == 0.0:
             continue
         middle = 0.5 * (low[:, d] + high[:, d])
         first, second = high.copy(), low.copy()
@@ -50,7 +50,9 @@ def test_every_pose_lies_in_a_box(region: Region) -> None:
     (cover,) = covers_of(Space(region, Orientations()))
     low, high, _ = _halved(cover, 7)
     points = region.inside_m(np.random.default_rng(1), 500)
-    coordinates = np.linalg.lstsq(cover.axes, (points - cover.origin_m).T, rcond=None)[0].T
+    coordinates = np.linalg.lstsq(cover.frame.axes, (points - cover.frame.origin_m).T, rcond=None)[
+        0
+    ].T
     slack = 1e-12
     inside = (coordinates[:, None] >= low - slack) & (coordinates[:, None] <= high + slack)
     assert inside.all(axis=2).any(axis=1).all()

@@ -24,8 +24,7 @@ from designer.report.design.workspace_figures import edge_caption
 from designer.report.figures.canvas import names_of
 from designer.report.figures.colours import DIAMETER, RATIO, TENSION, tension_of
 from designer.resources import example_file
-from designer.sizing.limit import limit_ratio
-from designer.sizing.newton import size_poses
+from designer.sizing.newton import limit_ratio, size_poses
 from designer.statics.shape import sag_m
 from designer.study import DeclaredEffect
 

@@ -23,9 +23,8 @@ from designer.model.cable import Cable, Cables, Material
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
 from designer.physics import catenary
-from designer.sizing.limit import limit_ratio
 from designer.sizing.loop import size_by_loop
-from designer.sizing.newton import Sizing, size_poses
+from designer.sizing.newton import Sizing, limit_ratio, size_poses
 from designer.sizing.nlp import size_by_nlp
 from designer.sizing.scp import optimality_of, size_by_scp
 from designer.statics.distribution import distribute_evenly

@@ -7,9 +7,8 @@ import pytest
 
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
-from designer.sizing.limit import limit_ratio
 from designer.sizing.loop import size_by_loop
-from designer.sizing.newton import size_poses
+from designer.sizing.newton import limit_ratio, size_poses
 from designer.sizing.nlp import size_by_nlp
 
 POSE = Poses.at([250.0, 200.0, -50.0])

@@ -63,7 +63,7 @@ def test_round_trip_with_inverse_statics(request, steel: Material, name: str, as
         robot,
         steel.cable(0.03),
         inverse.length_m[solved],
-        _some(nudged(poses, 1.0, 3), solved),
+        nudged(poses, 1.0, 3).part(solved),
         None if force is None else force[solved],
     )
     assert found.statics.is_solved.all()
@@ -76,17 +76,12 @@ def test_round_trip_with_inverse_statics(request, steel: Material, name: str, as
     assert np.abs(ratio - 1.0).max() < 1e-9
 
 
-def _some(poses: Poses, chosen: np.ndarray) -> Poses:
-    rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[chosen]
-    return Poses(poses.position_m[chosen], rotation)
-
-
 def test_cables_that_differ(six_cable_robot) -> None:
     cables = Cables(tuple(replace(ROPE, axial_stiffness_N=5e7 * (1 + k)) for k in range(6)))
     poses = poses_under(six_cable_robot, 10, 4)
     inverse = solve_sagging(six_cable_robot, poses, cables)
     solved = inverse.is_solved
-    start = _some(nudged(poses, 0.5, 5), solved)
+    start = nudged(poses, 0.5, 5).part(solved)
     found = solve_forward(six_cable_robot, cables, inverse.length_m[solved], start)
     assert solved.sum() >= 8
     assert np.abs(found.poses.position_m - poses.position_m[solved]).max() < 1e-9
@@ -197,7 +192,7 @@ def test_forces_of_fixed_lengths_are_those_of_inverse_statics(six_cable_robot) -
     solved = inverse.is_solved
     again = cables_of_length(
         robot,
-        _some(poses, solved),
+        poses.part(solved),
         inverse.length_m[solved],
         inverse.axial_stiffness_N[solved],
         inverse.weight_N_per_m[solved],

@@ -100,8 +100,7 @@ def compare(robot: Robot, poses: Poses, cable: Cable) -> int:
     """Compare every slope at each pose; the number of poses that have slopes."""
     compared = 0
     for k in range(len(poses.position_m)):
-        rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[k][None]
-        pose = Poses(poses.position_m[k][None], rotation)
+        pose = poses.part(slice(k, k + 1))
         statics = solve_sagging(robot, pose, cable)
         if not statics.is_solved[0]:
             continue
