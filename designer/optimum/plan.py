@@ -113,6 +113,10 @@ class OptimisationPlan:
         """Return the values at shares of the ranges (n_variables,)."""
         return tuple(v.at(float(x)) for v, x in zip(self.variables, shares, strict=True))
 
+    def shares(self, values: Values) -> FloatArray:
+        """Return where in the ranges values lie (n_variables,), from 0 to 1 within the bounds."""
+        return np.array([v.share(x) for v, x in zip(self.variables, values, strict=True)])
+
     def is_within(self, values: Values) -> bool:
         """Tell whether a design lies within all bounds, which the study as it is need not do."""
         return all(v.is_within(x) for v, x in zip(self.variables, values, strict=True))

@@ -7,13 +7,15 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from designer import __version__
 from designer.analysis.analyse import Analysis
 from designer.analysis.comparison import Comparison, ComparisonLine
 from designer.analysis.result_json import Json
 from designer.documents.csv_text import csv_text
 from designer.documents.plain import finite, json_text
-from designer.optimum.plan import Limit, OptimisationPlan, Values
+from designer.optimum.plan import Limit, OptimisationPlan
 from designer.optimum.search import Searched
 from designer.optimum.trial import Trial
 from designer.optimum.variables import Variable
@@ -143,7 +145,10 @@ class Optimum:
 
     def agrees(self, trial: Trial | None) -> bool:
         """Tell whether a start came to the place of the answer, within some of each range."""
-        return trial is not None and is_near(self.plan, trial.values, self.best.values, _NEAR)
+        if trial is None:
+            return False
+        distances = self.plan.shares(trial.values) - self.plan.shares(self.best.values)
+        return bool((np.abs(distances) <= _NEAR).all())
 
     @property
     def agreeing(self) -> int:
@@ -277,9 +282,3 @@ class Optimum:
             values = trial.values or [""] * len(names)
             rows.append([trial.start, trial.round, *values, value, trial.reason])
         return csv_text(rows)
-
-
-def is_near(plan: OptimisationPlan, a: Values, b: Values, share: float) -> bool:
-    """Tell whether two designs are no further apart than a share of each variable's range."""
-    rows = zip(plan.variables, a, b, strict=True)
-    return all(abs(variable.share(x) - variable.share(y)) <= share for variable, x, y in rows)

@@ -136,7 +136,7 @@ class _Run:
                 self._rate_all,
                 [(0.0, 1.0)] * n,
                 init=population,
-                x0=None if original is None else self._shares(original),
+                x0=None if original is None else np.clip(self._plan.shares(original), 0.0, 1.0),
                 maxiter=max(self._left, 1),
                 tol=_SETTLED,
                 rng=rng,
@@ -168,7 +168,7 @@ class _Run:
         """Search about the best design by a simplex that knows only values; returns its rating."""
         from scipy.optimize import minimize
 
-        at = self._shares(self._best().values)
+        at = np.clip(self._plan.shares(self._best().values), 0.0, 1.0)
         side = np.where(at + _SIMPLEX > 1.0, -_SIMPLEX, _SIMPLEX)
         minimize(
             lambda x: float(self._rate_all(x[:, None])[0]),
@@ -184,10 +184,6 @@ class _Run:
             },
         )
         return self._rated(self._best())
-
-    def _shares(self, values: Values) -> FloatArray:
-        pairs = zip(self._plan.variables, values, strict=True)
-        return np.clip([variable.share(value) for variable, value in pairs], 0.0, 1.0)
 
     def _rate_all(self, shares: FloatArray) -> FloatArray:
         """Rate designs at shares of the ranges (n_variables, n_designs); less is better."""

@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from designer.arrays import FloatArray
 from designer.optimum.plan import OptimisationPlan, Values
 from designer.optimum.trial import Trial
 from designer.progress import Advance
@@ -82,8 +81,10 @@ class Verifier:
         better = [trial for trial in self.failed if self._is_better(trial.value)]
         if self.best is None or not better:
             return
-        holds = self._shares(self.best.values)
-        fails = min((self._shares(t.values) for t in better), key=lambda x: np.abs(x - holds).max())
+        holds = self.plan.shares(self.best.values)
+        fails = min(
+            (self.plan.shares(t.values) for t in better), key=lambda x: np.abs(x - holds).max()
+        )
         for _ in range(min(_BETWEEN, self._left)):
             middle = 0.5 * (holds + fails)
             trial = try_design(self.plan.values(middle))
@@ -104,8 +105,8 @@ class Verifier:
 
     def _distance(self, trial: Trial) -> float:
         """Return how far the nearest verified design is, over the ranges."""
-        at = self._shares(trial.values)
-        distances = (np.abs(self._shares(values) - at).max() for values in self.verified)
+        at = self.plan.shares(trial.values)
+        distances = (np.abs(self.plan.shares(values) - at).max() for values in self.verified)
         return min(map(float, distances), default=math.inf)
 
     def _is_better(self, looks: float) -> bool:
@@ -121,7 +122,3 @@ class Verifier:
         elif self._is_better(value):
             self.best = trial
         return value is not None
-
-    def _shares(self, values: Values) -> FloatArray:
-        pairs = zip(self.plan.variables, values, strict=True)
-        return np.array([variable.share(value) for variable, value in pairs])
