@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -18,10 +19,10 @@ from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
 from designer.model.region import Region
 from designer.model.space import named_position
-from designer.model.workspace import HangsBelow, Workspace
+from designer.model.workspace import Workspace
 from designer.selection.cases import CaseResult
-from designer.workspace.demand import rope_demand, settled_demand
-from designer.workspace.refine import LIGHT, Demand, refine_over_branches
+from designer.workspace.demand import tension_demand
+from designer.workspace.refine import LIGHT, refine_over_branches
 
 _FULL = 1e-5
 """Above 100 %: what is not worth another turn."""
@@ -119,7 +120,7 @@ def _end(
 
     def used_at(pose: _Carried, value: float) -> float:
         loaded, workspace = change(pose.case, value)
-        demand = _tension(loaded, workspace.hangs_below)(pose.place_at(value)[None])
+        demand = tension_demand(loaded, workspace.hangs_below, pose.place_at(value)[None])
         return float(demand[0]) / loaded.cable.allowable_tension_N
 
     poses = [carried(case, case.verification.worst_place, span[0]) for case in cases]
@@ -174,17 +175,6 @@ def _searched(
     starts = np.array([pose.place_at(value) for pose in poses])
     if loaded.keeps_lengths:
         return starts[0], value
-
-    def demand_with(*, seeks_better: bool = True) -> Demand:
-        return _tension(loaded, workspace.hangs_below, seeks_better=seeks_better)
-
-    (worst,) = refine_over_branches(workspace.space, demand_with, starts, LIGHT)
+    demand = partial(tension_demand, loaded, workspace.hangs_below)
+    (worst,) = refine_over_branches(workspace.space, demand, starts, LIGHT)
     return worst.place, value
-
-
-def _tension(loaded: Loaded, hangs_below: HangsBelow, *, seeks_better: bool = True) -> Demand:
-    """Return the demand for tension [N]."""
-    if loaded.keeps_lengths:
-        return settled_demand(loaded, hangs_below, seeks_better=seeks_better)
-    all_of_it = rope_demand(loaded.robot, loaded.cable, hangs_below, seeks_better=seeks_better)
-    return lambda places: all_of_it(places)[:, 0]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -117,7 +117,7 @@ class Quick:
         if np.isneginf(demand).all():
             raise NotHeldError(2.0, "every pose is left out")
         at, hangs_below = int(demand.argmax()), workspace.hangs_below
-        closer = diameter_demand(built.robot, material, hangs_below, seeks_better=False)
+        closer = partial(diameter_demand, built.robot, material, hangs_below, seeks_better=False)
         return climbed(self.evenly.space, closer, places[at], float(demand[at]))
 
     @cached_property
@@ -160,13 +160,13 @@ class Quick:
     def _tension_N(self, candidate: Candidate) -> float:
         """Return what a rope meets in the case that governs, about its worst sample as well."""
         case = governing(candidate.cases)
-        loaded, hangs_below = case.loaded, self.evenly.hangs_below
+        loaded = case.loaded
+        of_rope = loaded.robot, loaded.cable, self.evenly.hangs_below
         if loaded.lost_cable is not None:
             return case.verification.max_tension_N
-        demand = rope_demand(loaded.robot, loaded.cable, hangs_below, seeks_better=False)
         worst = climbed(
             self.evenly.of_case(case.case).space,
-            lambda places: demand(places)[:, 0],
+            lambda places: rope_demand(*of_rope, places, seeks_better=False)[:, 0],
             case.verification.worst_place,
             case.verification.max_tension_N,
         )

@@ -25,11 +25,11 @@ from designer.model.workspace import HangsBelow, Workspace
 from designer.progress import Advance
 from designer.selection.samples import over_kept_lengths, over_samples, sampled_at_tension
 from designer.selection.stiffening import StiffnessSearch
-from designer.selection.verify import Sampled, Verification, refined, refined_each
+from designer.selection.verify import Sampled, Verification, refined_each
 from designer.statics.cable_loss import CableLoss
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
-from designer.workspace.demand import rope_demand, settled, settled_demand
+from designer.workspace.demand import settled, tension_demand
 from designer.workspace.refine import LIGHT, refine_over_branches
 
 _MOST_SAMPLES = 256
@@ -98,10 +98,7 @@ class CaseResult:
 
         Minus infinity where the pose is left out for a cable that hangs below the platform.
         """
-        place = self.verification.worst_place[None]
-        if loaded.keeps_lengths:
-            return float(settled_demand(loaded, hangs_below)(place)[0])
-        return float(rope_demand(loaded.robot, loaded.cable, hangs_below)(place)[0, 0])
+        return float(tension_demand(loaded, hangs_below, self.verification.worst_place[None])[0])
 
     @cached_property
     def loss(self) -> CableLoss | None:
@@ -362,11 +359,11 @@ def _search_settled(result: CaseResult) -> CaseResult:
     """Search for the worst pose of a platform that settles on the lengths that it has."""
     loaded, workspace = result.loaded, result.workspace
     sampled = over_kept_lengths(loaded, workspace, _MOST_SAMPLES)
-    demand_with = partial(settled_demand, loaded, workspace.hangs_below)
+    demand = partial(tension_demand, loaded, workspace.hangs_below)
     starts = np.concatenate([result.sampled.worst_places, sampled.worst_places])
-    (worst,) = refine_over_branches(workspace.space, demand_with, starts, LIGHT)
+    (worst,) = refine_over_branches(workspace.space, demand, starts, LIGHT)
     # Lengths are those before it settles.
-    lengths = refined(loaded.robot, workspace, loaded.cable, sampled, LIGHT)
+    (lengths,) = refined_each(loaded.robot, workspace, [loaded.cable], [sampled], LIGHT)
     verification = replace(
         lengths,
         worst_place=worst.place,
@@ -394,7 +391,7 @@ def _turned_once(result: CaseResult) -> CaseResult:
             break
         loaded, place = steeper.loaded, steeper.verification.worst_place
         start = replace(steeper.sampled, worst_places=place[None])
-        moved = refined(loaded.robot, steeper.workspace, loaded.cable, start, LIGHT)
+        (moved,) = refined_each(loaded.robot, steeper.workspace, [loaded.cable], [start], LIGHT)
         if moved.utilisation > steeper.utilisation:
             steeper = replace(steeper, verification=moved)
         result = steeper if steeper.utilisation > before else result

@@ -5,21 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, IntArray
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
-from designer.model.cable import Material
+from designer.model.cable import Material, MaterialsByPose
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.selection.efficiency import Allowance
 from designer.sizing.newton import size_poses
-from designer.workspace.demand import diameter_demand, diameter_demands
-from designer.workspace.refine import Worst, worst_over_samples_of_each
+from designer.workspace.demand import diameter_demand
+from designer.workspace.refine import Worst, worst_over_samples
 from designer.workspace.section import FamilyAt, in_lockstep, thinnest
 
 _MOST_TURNS = 20
@@ -73,12 +72,16 @@ def continuous_optima(
     def worsts_of(families: Mapping[int, Material]) -> Mapping[int, Worst]:
         worsts = {}
         for k, family in families.items():
-            if np.isposinf(diameter_demand(built.robot, family, hangs_below)(doubtful[k])).any():
+            if np.isposinf(diameter_demand(built.robot, family, hangs_below, doubtful[k])).any():
                 worsts[k] = Worst(doubtful[k][0], math.inf)
         unsettled = [k for k in families if k not in worsts]
         materials = [families[k] for k in unsettled]
-        demand_with = partial(diameter_demands, built.robot, materials, hangs_below)
-        extremes = worst_over_samples_of_each(workspace, demand_with, len(materials))
+
+        def demand(places: FloatArray, search: IntArray, **how: bool) -> FloatArray:
+            each = MaterialsByPose(materials, search)
+            return diameter_demand(built.robot, each, hangs_below, places, **how)
+
+        extremes = worst_over_samples(workspace, demand, len(materials))
         for k, (worst,) in zip(unsettled, extremes, strict=True):
             # Where every pose is left out, nothing is served.
             left_out = worst.demand == -math.inf

@@ -66,8 +66,8 @@ def prove_governing(
         return CaseProof(proof, name), tuple(cases)
     place, utilisation = proof.worst[: space.n_coordinates], proof.found
     if np.isfinite(utilisation):
-        demand_with = partial(rope_demand, loaded.robot, cable, workspace.hangs_below)
-        refined = refine_over_branches(space, demand_with, place[None], LIGHT)[0]
+        demand = partial(rope_demand, loaded.robot, cable, workspace.hangs_below)
+        refined = refine_over_branches(space, demand, place[None], LIGHT)[0]
         if refined.demand > utilisation * cable.allowable_tension_N:
             place, utilisation = refined.place, refined.demand / cable.allowable_tension_N
     verification = replace(

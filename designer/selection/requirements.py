@@ -30,8 +30,8 @@ from designer.statics.cable_loss import Fate
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
 from designer.study import Selection
-from designer.workspace.demand import is_left_out, length_demand, settled
-from designer.workspace.refine import LIGHT, Demand, Worst, refine_over_branches
+from designer.workspace.demand import is_left_out, rope_demand, settled
+from designer.workspace.refine import LIGHT, Worst, refine_over_branches
 
 QUICK_SAMPLES, SLOW_SAMPLES, FEWEST_SAMPLES = 2000, 500, 16
 """Poses evaluated in all directions of a load case together, of robots that are quick or slow to
@@ -128,14 +128,14 @@ def _evaluate_case(loads: CaseLoads, criteria: Sequence[Criterion]) -> Iterator[
         [space.landmarks(), workspace.thinned(max(samples // count, FEWEST_SAMPLES))]
     )
     severities = np.stack(
-        [_severity(loaded, workspace, of_case)(places).max(axis=0) for loaded in loads.directions]
+        [_severity(loaded, workspace, of_case, places).max(axis=0) for loaded in loads.directions]
     )
     worst = severities.argmax(axis=0)
     for number in np.unique(worst):
         loaded = loads.directions[number]
         columns = [of_case[k] for k in np.flatnonzero(worst == number)]
-        demand_with = partial(_severity, loaded, workspace, columns)
-        extremes = refine_over_branches(space, demand_with, places, LIGHT)
+        demand = partial(_severity, loaded, workspace, columns)
+        extremes = refine_over_branches(space, demand, places, LIGHT)
         for criterion, extreme in zip(columns, extremes, strict=True):
             if np.isneginf(extreme.demand):  # no pose of the case counts
                 continue
@@ -155,13 +155,13 @@ def _turned(
         place, before = extreme.place, extreme.demand
 
         def severity_of(other: Loaded, place: FloatArray = place) -> float:
-            return float(_severity(other, workspace, [criterion])(place[None])[0, 0])
+            return float(_severity(other, workspace, [criterion], place[None])[0, 0])
 
         loaded, severity = steepest(loaded, before, severity_of)
         if loaded.keeps_lengths:  # a search for the pose takes long
             break
-        demand_with = partial(_severity, loaded, workspace, [criterion])
-        (again,) = refine_over_branches(workspace.space, demand_with, place[None], LIGHT)
+        demand = partial(_severity, loaded, workspace, [criterion])
+        (again,) = refine_over_branches(workspace.space, demand, place[None], LIGHT)
         extreme = again if again.demand > severity else Worst(place, severity)
         if extreme.demand <= before + ROUNDING * abs(before):
             break
@@ -172,20 +172,17 @@ def _severity(
     loaded: Loaded,
     workspace: Workspace,
     criteria: Sequence[Criterion],
+    places: FloatArray,
     *,
     seeks_better: bool = True,
-) -> Demand:
+) -> FloatArray:
     """Return the demand (n, n_criteria) of places; minus infinite where a place does not count."""
-
-    def demand(places: FloatArray) -> FloatArray:
-        quantities, _ = _quantities(loaded, workspace, criteria, places, seeks_better=seeks_better)
-        columns = [
-            np.nan_to_num(criterion.severity(quantity), nan=-np.inf).max(axis=1)
-            for criterion, quantity in zip(criteria, quantities, strict=True)
-        ]
-        return np.column_stack(columns)
-
-    return demand
+    quantities, _ = _quantities(loaded, workspace, criteria, places, seeks_better=seeks_better)
+    columns = [
+        np.nan_to_num(criterion.severity(quantity), nan=-np.inf).max(axis=1)
+        for criterion, quantity in zip(criteria, quantities, strict=True)
+    ]
+    return np.column_stack(columns)
 
 
 def _quantities(
@@ -250,17 +247,11 @@ def extreme_lengths_m(loads: CaseLoads) -> tuple[FloatArray, FloatArray]:
     """
     loaded, workspace = loads.directions[0], loads.workspace
 
-    def demand_with(*, seeks_better: bool = True) -> Demand:
-        def demand(places: FloatArray) -> FloatArray:
-            poses = Poses.at(places)
-            statics = solve_sagging(loaded.robot, poses, loaded.cable, seeks_better=seeks_better)
-            counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
-            return length_demand(statics, counts)
-
-        return demand
+    def demand(places: FloatArray, **how: bool) -> FloatArray:
+        return rope_demand(loaded.robot, loaded.cable, workspace.hangs_below, places, **how)[:, 1:]
 
     starts = workspace.thinned(SLOW_SAMPLES)
-    extremes = refine_over_branches(workspace.space, demand_with, starts, LIGHT)
+    extremes = refine_over_branches(workspace.space, demand, starts, LIGHT)
     lengths = np.array([extreme.demand for extreme in extremes]).reshape(2, -1)
     lengths[np.isinf(lengths)] = np.nan
     return lengths[0], -lengths[1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -77,7 +78,7 @@ def _leans(loaded: Loaded, workspace: Workspace) -> bool:
 
 def _one_by_one(loaded: Loaded, workspace: Workspace) -> Sampled:
     """Return what a cable meets over the samples, which poses count told by the true vertical."""
-    demand = rope_demand(loaded.robot, loaded.cable, workspace.hangs_below)
+    demand = partial(rope_demand, loaded.robot, loaded.cable, workspace.hangs_below)
     every = (workspace.space.landmarks(), *workspace.places())
     batches = [batch for batch in every if len(batch)]  # a list of points has no landmarks
     tension, lengths, _ = np.split(

@@ -7,20 +7,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import chain, pairwise
 
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.calling import Meets
-from designer.model.cable import Cable
+from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.statics.sizes import add_slowly, is_quick, meet
-from designer.workspace.demand import rope_demand, rope_demands
-from designer.workspace.refine import Effort, Worst, refine_each_over_branches, worst_over_samples
+from designer.workspace.demand import rope_demand
+from designer.workspace.refine import (
+    Demand,
+    Effort,
+    Worst,
+    refine_each_over_branches,
+    worst_over_samples,
+)
 
 _CELLS_A_SIDE, _TURNS = 6, 8
 _CELLS = _CELLS_A_SIDE**3 * _TURNS
@@ -117,19 +122,8 @@ def verify(robot: Robot, workspace: Workspace, cable: Cable) -> Verification:
 
     Where every pose is left out, nothing is served: infinite, at no position.
     """
-    demand_with = partial(rope_demand, robot, cable, workspace.hangs_below)
-    return _verification(cable, worst_over_samples(workspace, demand_with))
-
-
-def refined(
-    robot: Robot,
-    workspace: Workspace,
-    cable: Cable,
-    sampled: Sampled,
-    effort: Effort | None = None,
-) -> Verification:
-    """Search for the extremes of a cable between the samples, from the worst of them."""
-    return refined_each(robot, workspace, [cable], [sampled], effort)[0]
+    (worst,) = worst_over_samples(workspace, _demand(robot, workspace, [cable]), 1)
+    return _verification(cable, worst)
 
 
 def refined_each(
@@ -139,15 +133,25 @@ def refined_each(
     sampled: Sequence[Sampled],
     effort: Effort | None = None,
 ) -> list[Verification]:
-    """Search for the extremes of several cables in one batch, as `refined`."""
-    demand_with = partial(rope_demands, robot, cables, workspace.hangs_below)
+    """Search for the extremes of cables between the samples, from the worst, in a batch."""
     starts = [of_cable.worst_places for of_cable in sampled]
-    worsts = refine_each_over_branches(workspace.space, demand_with, starts, effort)
+    demand = _demand(robot, workspace, cables)
+    worsts = refine_each_over_branches(workspace.space, demand, starts, effort)
     verifications = map(_verification, cables, worsts)
     return [
         replace(verification, longest_m=np.maximum(verification.longest_m, of_cable.longest_m))
         for verification, of_cable in zip(verifications, sampled, strict=True)
     ]
+
+
+def _demand(robot: Robot, workspace: Workspace, cables: Sequence[Cable]) -> Demand:
+    """Return what each of the cables meets, see `rope_demand`."""
+
+    def demand(places: FloatArray, search: IntArray, *, seeks_better: bool = True) -> FloatArray:
+        cable = Cables(cables, search)
+        return rope_demand(robot, cable, workspace.hangs_below, places, seeks_better=seeks_better)
+
+    return demand
 
 
 def _verification(cable: Cable, worst: list[Worst]) -> Verification:

@@ -1,12 +1,10 @@
-"""What a place asks for: a diameter, or a tension; the objective of the search for the worst."""
+"""What places ask for: a diameter, or a tension; what the search for the worst is to maximise."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import Cable, Cables, Material, MaterialsByPose
 from designer.model.load_case import Loaded
 from designer.model.robot import Poses, Robot
@@ -16,7 +14,6 @@ from designer.model.workspace import HangsBelow, Workspace
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.cable_loss import CableLoss, settle
 from designer.statics.inverse import Statics, solve_massless, solve_sagging
-from designer.workspace.refine import Demand, DemandOfEach
 
 
 def is_left_out(statics: Statics, hangs_below: HangsBelow) -> BoolArray:
@@ -58,69 +55,50 @@ def in_worst_turn(space: Space, places: FloatArray, values: FloatArray) -> Float
 
 
 def diameter_demand(
-    robot: Robot, material: Material, hangs_below: HangsBelow, *, seeks_better: bool = True
-) -> Demand:
-    """Needed diameter [m]; inf where no cable of the family will do."""
-    return _alone(diameter_demands(robot, [material], hangs_below, seeks_better=seeks_better))
-
-
-def diameter_demands(
     robot: Robot,
-    materials: Sequence[Material],
+    material: Material | MaterialsByPose,
     hangs_below: HangsBelow,
+    places: FloatArray,
     *,
     seeks_better: bool = True,
-) -> DemandOfEach:
-    """Needed diameter [m] of each of several families, as `diameter_demand`."""
-
-    def demand(places: FloatArray, search: IntArray) -> FloatArray:
-        families = MaterialsByPose(materials, search)
-        sizing = size_poses(robot, Poses.at(places), families, seeks_better=seeks_better)
-        return demand_of(sizing.diameter_m, sizing.statics, hangs_below)
-
-    return demand
+) -> FloatArray:
+    """Needed diameter [m]; inf where no cable of the family will do."""
+    sizing = size_poses(robot, Poses.at(places), material, seeks_better=seeks_better)
+    return demand_of(sizing.diameter_m, sizing.statics, hangs_below)
 
 
 def rope_demand(
-    robot: Robot, cable: Cable, hangs_below: HangsBelow, *, seeks_better: bool = True
-) -> Demand:
+    robot: Robot,
+    cable: Cable | Cables,
+    hangs_below: HangsBelow,
+    places: FloatArray,
+    *,
+    seeks_better: bool = True,
+) -> FloatArray:
     """What a given cable meets (n, 1 + 2 n_cables): largest tension [N], lengths, negated lengths.
 
     Lengths are unstrained [m]; the largest of the negated ones is the shortest.
     """
-    return _alone(rope_demands(robot, [cable], hangs_below, seeks_better=seeks_better))
+    statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
+    tension = demand_of(statics.largest_tension_N, statics, hangs_below)
+    return np.column_stack([tension, length_demand(statics, np.isfinite(tension))])
 
 
-def rope_demands(
-    robot: Robot, cables: Sequence[Cable], hangs_below: HangsBelow, *, seeks_better: bool = True
-) -> DemandOfEach:
-    """What each of several cables meets, as `rope_demand`."""
+def tension_demand(
+    loaded: Loaded, hangs_below: HangsBelow, places: FloatArray, *, seeks_better: bool = True
+) -> FloatArray:
+    """Largest tension in a load case [N]; inf where the platform is not held, or finds no rest.
 
-    def demand(places: FloatArray, search: IntArray) -> FloatArray:
-        cable = Cables(cables, search)
-        statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
-        tension = demand_of(statics.largest_tension_N, statics, hangs_below)
-        return np.column_stack([tension, length_demand(statics, np.isfinite(tension))])
-
-    return demand
-
-
-def _alone(demand: DemandOfEach) -> Demand:
-    return lambda places: demand(places, np.zeros(len(places), dtype=np.int64))
-
-
-def settled_demand(loaded: Loaded, hangs_below: HangsBelow, *, seeks_better: bool = True) -> Demand:
-    """Largest tension on kept lengths [N]; inf where the platform finds no rest.
-
-    Which poses are left out is told by how the cables hang before it settles.
+    On kept lengths that after it has settled; which poses are left out is told by how the cables
+    hang before.
     """
-
-    def demand(places: FloatArray) -> FloatArray:
-        cable_loss = settled(loaded, Poses.at(places), seeks_better=seeks_better)
+    poses = Poses.at(places)
+    if loaded.keeps_lengths:
+        cable_loss = settled(loaded, poses, seeks_better=seeks_better)
         left_out = is_left_out(cable_loss.before, hangs_below)
         return np.where(left_out, -np.inf, cable_loss.largest_tension_N)
-
-    return demand
+    statics = solve_sagging(loaded.robot, poses, loaded.cable, seeks_better=seeks_better)
+    return demand_of(statics.largest_tension_N, statics, hangs_below)
 
 
 def settled(loaded: Loaded, poses: Poses, *, seeks_better: bool = True) -> CableLoss:
@@ -136,23 +114,24 @@ def length_demand(statics: Statics, counts: BoolArray) -> FloatArray:
 
 
 def massless_demand(
-    robot: Robot, material: Material, hangs_below: HangsBelow, *, seeks_better: bool = True
-) -> Demand:
+    robot: Robot,
+    material: Material,
+    hangs_below: HangsBelow,
+    places: FloatArray,
+    *,
+    seeks_better: bool = True,
+) -> FloatArray:
     """Largest tension of straight weightless cables [N]; inf where they do not hold the platform.
 
     Of the poses that count with sagging cables, so that the two can be compared. Toward a pose that
     straight cables do not hold the tension can grow without bound, so that among those that they
     do hold there need be no largest.
     """
-
-    def demand(places: FloatArray) -> FloatArray:
-        if hangs_below == "include":
-            tension = solve_massless(robot, Poses.at(places)).largest_tension_N
-            return np.where(np.isnan(tension), np.inf, tension)
-        sizing = size_poses(robot, Poses.at(places), material, seeks_better=seeks_better)
-        return massless_demand_of(sizing, hangs_below)
-
-    return demand
+    if hangs_below == "include":
+        tension = solve_massless(robot, Poses.at(places)).largest_tension_N
+        return np.where(np.isnan(tension), np.inf, tension)
+    sizing = size_poses(robot, Poses.at(places), material, seeks_better=seeks_better)
+    return massless_demand_of(sizing, hangs_below)
 
 
 def massless_demand_of(sizing: Sizing, hangs_below: HangsBelow) -> FloatArray:

@@ -18,7 +18,7 @@ from designer.workspace.clearance import (
     clearance_to_platform,
     names_of,
 )
-from designer.workspace.refine import LIGHT, Demand, refine_over_branches
+from designer.workspace.refine import LIGHT, refine_over_branches
 
 MOST_SAMPLES = 1000
 """Poses that are looked at before the search between them."""
@@ -105,12 +105,12 @@ def survey(
             poses = Poses.at(places)
             return among(solve_sagging(robot, poses, cable, seeks_better=seeks_better))
 
-        def nearness_with(seeks_better: bool) -> Demand:
-            return lambda at: -np.nan_to_num(clearance(at, seeks_better).distance_m, nan=np.inf)
+        def nearness(places: FloatArray, *, seeks_better: bool) -> FloatArray:
+            return -np.nan_to_num(clearance(places, seeks_better).distance_m, nan=np.inf)
 
         if np.isnan(sampled.distance_m).all():
             return None
-        (worst,) = refine_over_branches(workspace.space, nearness_with, thinned, LIGHT)
+        (worst,) = refine_over_branches(workspace.space, nearness, thinned, LIGHT)
         closest = clearance(worst.place[None])
         first, second = (int(number) for number in closest.pair[0])
         return Nearest(

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
+from functools import partial
 
 import numpy as np
 
@@ -23,12 +24,10 @@ from designer.model.space import Space
 from designer.model.workspace import Workspace
 from designer.workspace.pool import CELLS_A_SIDE, Pool, local_maxima
 
-Demand = Callable[[FloatArray], FloatArray]
+Demand = Callable[..., FloatArray]
 """Maps places (n, n_coordinates) to what they ask for (n,): inf where nothing is enough, -inf where
-the place does not count. For several extremes at once (n, n_extremes)."""
-DemandOfEach = Callable[[FloatArray, IntArray], FloatArray]
-"""The same for several searches at once: maps places and the number of the search of each (n,),
-ascending, to what they ask for."""
+the place does not count. For several extremes at once (n, n_extremes); for several searches at once
+it takes the number of the search of each place (n,), ascending, as well."""
 
 _CHUNK = 2**15
 """Places whose demand is computed at once, at most: memory stays flat."""
@@ -93,12 +92,12 @@ def refine(
     space: Space, demand: Demand, starts: FloatArray, effort: Effort | None = None
 ) -> list[Worst]:
     """Return the largest of each of several demands (n, n_extremes); see `refine_each`."""
-    return refine_each(space, _alone(demand), [starts], effort)[0]
+    return refine_each(space, lambda places, _: demand(places), [starts], effort)[0]
 
 
 def refine_each(
     space: Space,
-    demand: DemandOfEach,
+    demand: Demand,
     starts: Sequence[FloatArray],
     effort: Effort | None = None,
 ) -> list[list[Worst]]:
@@ -116,40 +115,29 @@ def refine_each(
     return _PoseSearch(space, demand, effort or Effort(), len(starts)).run(starts)
 
 
-def _alone(demand: Demand) -> DemandOfEach:
-    """Return the demand of a search that has none beside it."""
-    return lambda places, _: demand(places)
-
-
 def refine_over_branches(
-    space: Space,
-    demand_with: Callable[..., Demand],
-    starts: FloatArray,
-    effort: Effort | None = None,
+    space: Space, demand: Demand, starts: FloatArray, effort: Effort | None = None
 ) -> list[Worst]:
     """Return the largest of each of several demands; see `refine_each_over_branches`."""
 
-    def demands(*, seeks_better: bool) -> DemandOfEach:
-        return _alone(demand_with(seeks_better=seeks_better))
+    def demand_of_each(places: FloatArray, _: IntArray, *, seeks_better: bool) -> FloatArray:
+        return demand(places, seeks_better=seeks_better)
 
-    return refine_each_over_branches(space, demands, [starts], effort)[0]
+    return refine_each_over_branches(space, demand_of_each, [starts], effort)[0]
 
 
 def refine_each_over_branches(
-    space: Space,
-    demand_with: Callable[..., DemandOfEach],
-    starts: Sequence[FloatArray],
-    effort: Effort | None = None,
+    space: Space, demand: Demand, starts: Sequence[FloatArray], effort: Effort | None = None
 ) -> list[list[Worst]]:
     """Return what `refine_each` does, of solutions that may have better branches.
 
     To look for better branches takes a hundred times as long. Where it changes none of the starts,
     a search does without, and its results are computed again with it: a better branch asks for
     less, so that a largest diameter or tension stands if it stands there. If anything has changed,
-    the whole search is made again with it. ``demand_with`` takes ``seeks_better``, whether to look
-    for them, and returns the demand.
+    the whole search is made again with it. The demand takes ``seeks_better``, whether to look for
+    them.
     """
-    plain, thorough = demand_with(seeks_better=False), demand_with(seeks_better=True)
+    plain, thorough = (partial(demand, seeks_better=seeks) for seeks in (False, True))
 
     def changed(places: Sequence[FloatArray], among: IntArray) -> IntArray:
         """Return which of some searches have other demands at their places with it."""
@@ -161,7 +149,7 @@ def refine_each_over_branches(
         differs = plain(at, search) != thorough(at, search)
         return np.unique(search[differs.reshape(len(at), -1).any(axis=1)])
 
-    def searched(demand: DemandOfEach, among: IntArray) -> list[list[Worst]]:
+    def searched(demand: Demand, among: IntArray) -> list[list[Worst]]:
         """Search anew, numbered from 0, for what has these numbers."""
         if not len(among):
             return []
@@ -178,25 +166,13 @@ def refine_each_over_branches(
     return [extremes[k] for k in every.tolist()]
 
 
-def worst_over_samples(workspace: Workspace, demand_with: Callable[..., Demand]) -> list[Worst]:
-    """Return the largest of each of several demands; see `worst_over_samples_of_each`."""
-
-    def demands(*, seeks_better: bool = True) -> DemandOfEach:
-        return _alone(demand_with(seeks_better=seeks_better))
-
-    return worst_over_samples_of_each(workspace, demands, 1)[0]
-
-
-def worst_over_samples_of_each(
-    workspace: Workspace, demand_with: Callable[..., DemandOfEach], count: int
-) -> list[list[Worst]]:
+def worst_over_samples(workspace: Workspace, demand: Demand, count: int) -> list[list[Worst]]:
     """Return the largest of each demand over all samples, then over the region from the best.
 
     For a ``count`` of searches. Starts are the samples that ask for most of the first demand; see
     `refine_each_over_branches`.
     """
     pools = [Pool(workspace.space) for _ in range(count)]
-    demand = demand_with()
     for rows in workspace.places():
         for first in range(0, count, size := max(_CHUNK // len(rows), 1)):
             batch = np.arange(first, min(first + size, count))
@@ -204,7 +180,7 @@ def worst_over_samples_of_each(
             for k, of_search in zip(batch, values.reshape(len(batch), len(rows), -1), strict=True):
                 pools[k].add(rows, of_search[:, 0])
     starts = [pool.places for pool in pools]
-    return refine_each_over_branches(workspace.space, demand_with, starts)
+    return refine_each_over_branches(workspace.space, demand, starts)
 
 
 @dataclass(slots=True, eq=False)
@@ -260,7 +236,7 @@ class _Climbs:
 class _PoseSearch:
     """Several searches, with all that their steps share."""
 
-    def __init__(self, space: Space, demand: DemandOfEach, effort: Effort, count: int) -> None:
+    def __init__(self, space: Space, demand: Demand, effort: Effort, count: int) -> None:
         self._space, self._demand, self._effort, self._count = space, demand, effort, count
         self._size = np.ptp(space.bounds, axis=0)
         self._best = np.empty((count, 0))

@@ -15,7 +15,7 @@ from designer.model.workspace import Workspace
 from designer.statics.inverse import solve_sagging
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.workspace.demand import is_left_out
-from designer.workspace.refine import LIGHT, Demand, refine_over_branches
+from designer.workspace.refine import LIGHT, refine_over_branches
 
 MOST_SAMPLES, FEW_SAMPLES = 2000, 500
 """Poses that are looked at before the search between them, for a design and for each candidate."""
@@ -53,13 +53,13 @@ def survey_stiffness(
 
     The search starts from `MOST_SAMPLES` of the workspace's samples.
     """
-    demand_with = partial(displacement_demand, robot, workspace, cable)
+    displacement = partial(displacement_demand, robot, workspace, cable)
     thinned = workspace.thinned(MOST_SAMPLES)
-    demand = demand_with()(thinned)
+    demand = displacement(thinned)
     counts = ~np.isneginf(demand[:, 0])
     if np.isneginf(demand[:, 1]).all():
         return None
-    softest, stiffest = refine_over_branches(workspace.space, demand_with, thinned)
+    softest, stiffest = refine_over_branches(workspace.space, displacement, thinned)
     return StiffnessSurvey(
         samples=int(counts.sum()),
         unstable=int(np.isposinf(demand[:, 0]).sum()),
@@ -80,35 +80,35 @@ def smallest_stiffness_N_per_m(
     counts. Searched between the samples as well, or taken from `FEW_SAMPLES` of them. See
     `designer.statics.stiffness`.
     """
-    demand_with = partial(displacement_demand, robot, workspace, cable)
     thinned = workspace.thinned(FEW_SAMPLES)
 
-    def softness_with(**how: bool) -> Demand:
-        demand = demand_with(**how)
-        return lambda places: demand(places)[:, 0]
+    def softness(places: FloatArray, *, seeks_better: bool = True) -> FloatArray:
+        demand = displacement_demand(robot, workspace, cable, places, seeks_better=seeks_better)
+        return demand[:, 0]
 
     if searched:
-        (worst,) = refine_over_branches(workspace.space, softness_with, thinned, LIGHT)
+        (worst,) = refine_over_branches(workspace.space, softness, thinned, LIGHT)
         softest = worst.demand
     else:
-        softest = float(softness_with()(thinned).max(initial=-np.inf))
+        softest = float(softness(thinned).max(initial=-np.inf))
     return float("nan") if np.isneginf(softest) else 1.0 / softest
 
 
 def displacement_demand(
-    robot: Robot, workspace: Workspace, cable: Cable | Cables, *, seeks_better: bool = True
-) -> Demand:
+    robot: Robot,
+    workspace: Workspace,
+    cable: Cable | Cables,
+    places: FloatArray,
+    *,
+    seeks_better: bool = True,
+) -> FloatArray:
     """Displacement under a unit force, and negated, (n, 2) [m/N].
 
     Inf and -inf where the platform would not stay, both -inf where the pose does not count.
     """
-
-    def demand(places: FloatArray) -> FloatArray:
-        statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
-        counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
-        displacement = largest_displacement_m_per_N(statics)
-        stays = counts & np.isfinite(displacement)
-        softest = np.where(stays, displacement, np.where(counts, np.inf, -np.inf))
-        return np.column_stack([softest, np.where(stays, -displacement, -np.inf)])
-
-    return demand
+    statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
+    counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+    displacement = largest_displacement_m_per_N(statics)
+    stays = counts & np.isfinite(displacement)
+    softest = np.where(stays, displacement, np.where(counts, np.inf, -np.inf))
+    return np.column_stack([softest, np.where(stays, -displacement, -np.inf)])

@@ -114,8 +114,8 @@ def _summarise(
     sagging = massless = None
     ratio = np.nan
     if example is None and gathered.sampled is not None:
-        demand_with = partial(diameter_demand, robot, material, workspace.hangs_below)
-        (worst,) = refine_over_branches(workspace.space, demand_with, gathered.starts.places)
+        demand = partial(diameter_demand, robot, material, workspace.hangs_below)
+        (worst,) = refine_over_branches(workspace.space, demand, gathered.starts.places)
         if np.isfinite(worst.demand):
             pose = Poses.at(worst.place)
             tension = float(size_poses(robot, pose, material).statics.largest_tension_N)
@@ -125,8 +125,8 @@ def _summarise(
             example = worst.place
     starts = gathered.massless_starts.places
     if len(starts):
-        demand_with = partial(massless_demand, robot, material, workspace.hangs_below)
-        (worst,) = refine_over_branches(workspace.space, demand_with, starts)
+        demand = partial(massless_demand, robot, material, workspace.hangs_below)
+        (worst,) = refine_over_branches(workspace.space, demand, starts)
         if np.isfinite(worst.demand):
             diameter = material.diameter_for_tension_m(worst.demand)
             massless = Extreme.at(worst.place, diameter, worst.demand)

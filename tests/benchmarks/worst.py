@@ -19,6 +19,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -196,16 +197,16 @@ def check(study: Study, workspace: Workspace, count: int, rng: np.random.Generat
     told = mapped.sagging.diameter_m if mapped.sagging else np.inf
     if mapped.sagging is None and mapped.infeasible_example_m is None:
         told = -np.inf
-    compare("diameter", told, diameter_demand(robot, material, policy), count)
+    compare("diameter", told, partial(diameter_demand, robot, material, policy), count)
     straight = mapped.massless.max_tension_N if mapped.massless else np.inf
     if mapped.census.excluded == mapped.census.samples:
         straight = -np.inf
-    compare("massless", straight, massless_demand(robot, material, policy), count)
+    compare("massless", straight, partial(massless_demand, robot, material, policy), count)
     if mapped.sagging is None:
         return faults
     cable = material.cable(1.02 * told)
     rope = verify(robot, workspace, cable)
-    asked = rope_demand(robot, cable, policy)
+    asked = partial(rope_demand, robot, cable, policy)
     extremes = [rope.max_tension_N, *rope.longest_m, *-rope.shortest_m]
     names = ["tension", *(f"longest {k}" for k in range(1, robot.n_cables + 1))]
     names += [f"shortest {k}" for k in range(1, robot.n_cables + 1)]
@@ -213,7 +214,7 @@ def check(study: Study, workspace: Workspace, count: int, rng: np.random.Generat
         compare(names[k], extremes[k], _column(asked, k), count if k == 0 else count // 10)
     soft = survey_stiffness(robot, workspace, cable)
     if soft is not None:
-        displacement = _column(displacement_demand(robot, workspace, cable), 0)
+        displacement = _column(partial(displacement_demand, robot, workspace, cable), 0)
         compare("softest", soft.softest_m_per_N, displacement, _SLOW_SAMPLES["stiffness"])
     if rng.random() < 0.2:
         near = survey(robot, workspace, cable, 0.1).worst

@@ -14,7 +14,7 @@ from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.model.workspace import Workspace
-from designer.selection.verify import refined, verify, verify_sizes
+from designer.selection.verify import refined_each, verify, verify_sizes
 from designer.statics import sizes
 from designer.statics.inverse import solve_sagging
 from designer.workspace.demand import is_left_out
@@ -127,7 +127,7 @@ def test_worst_poses_are_from_all_over_and_the_search_ends_where_it_did(fast_rob
         (one,) = verify_sizes(fast_robot, workspace, [cable])
         assert len(np.unique(one.worst_places, axis=0)) == len(one.worst_places) > 100
         searched, alone = (
-            refined(fast_robot, workspace, cable, one),
+            refined_each(fast_robot, workspace, [cable], [one])[0],
             verify(fast_robot, workspace, cable),
         )
         assert searched.is_refined

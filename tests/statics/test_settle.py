@@ -12,7 +12,7 @@ from designer.model.load_case import LoadCase, Wind
 from designer.model.robot import Platform, Poses, Robot
 from designer.statics.cable_loss import Fate, settle
 from designer.statics.inverse import solve_sagging
-from designer.workspace.demand import settled_demand
+from designer.workspace.demand import tension_demand
 
 EXITS = np.array([[0, 0, 11.5], [30, 1, 12.5], [14, 26, 11.0]])
 CABLE = Cable(0.006, 0.13, 1.5e6, 2e4)
@@ -44,7 +44,7 @@ def test_platform_settles_where_the_twin_does(change_K: float, wind: np.ndarray 
     np.testing.assert_allclose(found.rest.position_m[0], at, atol=1e-8)
     assert found.moved_m[0] > 1e-3
     np.testing.assert_allclose(found.tension_N[0], tensions_N(pull, longer, load.q), rtol=1e-7)
-    asked = settled_demand(one, "include")(place[None])
+    asked = tension_demand(one, "include", place[None])
     assert asked[0] == pytest.approx(float(found.tension_N.max()), rel=1e-12)
 
 

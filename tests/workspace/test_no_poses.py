@@ -22,7 +22,7 @@ def test_no_poses_are_answered_by_none(name: str) -> None:
     assert size_poses(robot, none, study.material).diameter_m.shape == (0,)
     assert study.workspace is not None
     places = np.empty((0, study.workspace.space.n_coordinates))
-    assert diameter_demand(robot, study.material, "include")(places).shape == (0,)
+    assert diameter_demand(robot, study.material, "include", places).shape == (0,)
     for hangs_below in ("include", "exclude"):
-        assert massless_demand(robot, study.material, hangs_below)(places).shape == (0,)
-    assert rope_demand(robot, cable, "exclude")(places).shape == (0, 1 + 2 * robot.n_cables)
+        assert massless_demand(robot, study.material, hangs_below, places).shape == (0,)
+    assert rope_demand(robot, cable, "exclude", places).shape == (0, 1 + 2 * robot.n_cables)

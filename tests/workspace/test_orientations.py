@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -109,7 +110,7 @@ def test_a_list_of_points_in_a_range(six_cable_robot: Robot, steel: Material) ->
     region = PointList(frozen_array([[0.0, 0, -80], [5, 5, -75]]))
     space = Space(region, Orientations.within([-0.03, 0, 0], [0.05, 0, 0]))
     assert not space.is_discrete
-    demand = diameter_demand(six_cable_robot, steel, "include")
+    demand = partial(diameter_demand, six_cable_robot, steel, "include")
     (worst,) = refine(space, demand, np.array([[0.0, 0, -80, 0.01, 0, 0], [5, 5, -75, 0.01, 0, 0]]))
     assert any((worst.place[:3] == point).all() for point in region.points_m)
     line = np.linspace(-0.03, 0.05, 41)

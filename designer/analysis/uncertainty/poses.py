@@ -26,9 +26,8 @@ from designer.model.robot import Poses
 from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.selection.cases import CaseResult
-from designer.statics.inverse import solve_sagging
 from designer.statics.sizes import add_slowly, is_quick, meet
-from designer.workspace.demand import demand_of, settled_demand
+from designer.workspace.demand import tension_demand
 from designer.workspace.refine import LIGHT, Effort, refine
 
 _CHUNK = 256
@@ -88,11 +87,7 @@ class GoverningCandidates:
         return used
 
     def _solved(self, loaded: Loaded) -> FloatArray:
-        if loaded.keeps_lengths:
-            tension = settled_demand(loaded, self.workspace.hangs_below)(self.places)
-        else:
-            statics = solve_sagging(loaded.robot, Poses.at(self.places), loaded.cable)
-            tension = demand_of(statics.largest_tension_N, statics, self.workspace.hangs_below)
+        tension = tension_demand(loaded, self.workspace.hangs_below, self.places)
         return np.asarray(tension / loaded.cable.allowable_tension_N)
 
     def _ropes(self, draws: Draws) -> FloatArray:
