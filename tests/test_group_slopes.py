@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from designer.analysis.group_slopes import GroupSlopes, group_slopes
+from designer.analysis.sensitivities import Sensitivities, group_sensitivities
 from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.cable import Cable, Cables
 from designer.model.prism import Prism
@@ -60,17 +60,18 @@ def robot() -> Robot:
 
 
 @pytest.fixture(scope="module")
-def found(robot: Robot) -> tuple[GroupSlopes, ...]:
+def found(robot: Robot) -> tuple[Sensitivities, ...]:
     workspace = Workspace(Prism.box((8, 22), (4, 14), (1, 7)))
-    return group_slopes(robot, workspace, assignment())
+    return group_sensitivities(robot, workspace, assignment())
 
 
 def test_slopes_of_groups_are_those_of_differences(
-    robot: Robot, found: tuple[GroupSlopes, ...]
+    robot: Robot, found: tuple[Sensitivities, ...]
 ) -> None:
     known, step = assignment(), 1e-5
     cables = [one.cable for one in known.by_cable]
     for one, place in zip(found, known.verification.worst_place, strict=True):
+        assert one.group is not None
         members = [cable - 1 for cable in one.group.cables]
         assert one.utilisation == pytest.approx(used(robot, cables, place, members), rel=1e-12)
 
@@ -113,7 +114,7 @@ def test_slopes_of_groups_are_those_of_differences(
             assert ours == pytest.approx(slope(moved), rel=1e-5, abs=1e-9)
 
 
-def test_report_shows_them(found: tuple[GroupSlopes, ...]) -> None:
+def test_report_shows_them(found: tuple[Sensitivities, ...]) -> None:
     analysis: Any = SimpleNamespace(carries=None, group_slopes=found)
     source: Any = SimpleNamespace(analysis=analysis)
     page = rendered(Section("carries", context=carries.sensitivities(source) or {})).body

@@ -14,10 +14,10 @@ from designer.analysis.carries import Carries, carries_of
 from designer.analysis.findings import Findings, find
 from designer.analysis.governing import GoverningPose, governing_pose
 from designer.analysis.governing_ropes import GoverningRopes, governing_ropes
-from designer.analysis.group_slopes import GroupSlopes, group_slopes
 from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.analysis.provenance import Provenance
 from designer.analysis.requirements import requirements_of
+from designer.analysis.sensitivities import Sensitivities, group_sensitivities
 from designer.analysis.uncertainty.uncertainty import UncertaintyAnalysis, uncertainty_of
 from designer.analysis.verification import SecondAnswer, second_answers
 from designer.effects.design import AsBuilt
@@ -254,9 +254,9 @@ class Analysis:
         return carries_of(self.study, self.selection, self.assignment.rope)
 
     @cached_property
-    def group_slopes(self) -> tuple[GroupSlopes, ...]:
+    def group_slopes(self) -> tuple[Sensitivities, ...]:
         """What the utilisation of each group of cables answers to."""
-        return group_slopes(self.built.robot, self.study.workspace, self.assignment)
+        return group_sensitivities(self.built.robot, self.study.workspace, self.assignment)
 
     @cached_property
     def servable(self) -> Servable | None:

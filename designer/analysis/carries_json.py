@@ -3,33 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
+
 from designer.analysis.carries import Carries
-from designer.analysis.group_slopes import GroupSlopes
-from designer.analysis.sensitivities import Sensitivity
-from designer.arrays import FloatArray
+from designer.analysis.sensitivities import Sensitivities, Sensitivity
 
 Json = dict[str, Any]
 
 
-def carries_dict(carries: Carries | None, groups: Sequence[GroupSlopes]) -> Json:
+def carries_dict(carries: Carries | None, groups: Sequence[Sensitivities]) -> Json:
     """Return sensitivities, reserves, sizes and first failures; empty where none is chosen.
 
     Of ``groups`` there are sensitivities alone, each with the name of its group.
     """
     if carries is None:
-        of_groups = (
-            _sensitivities(group.each, group.exit_points_per_m, "adjoint", group.group.name)
-            for group in groups
-        )
-        rows = [row for rows in of_groups for row in rows]
+        rows = [*_sensitivities(groups)]
         return {"sensitivities": rows, "reserve": None, "sizes_beside": [], "first_failures": []}
-    slopes = carries.sensitivities
     return {
-        "sensitivities": _sensitivities(slopes.each, slopes.exit_points_per_m, slopes.method),
+        "sensitivities": [*_sensitivities([carries.sensitivities])],
         "reserve": {
             "payload_factor": math.nan if carries.payload is None else carries.payload.value,
             "region_margin_m": math.nan if carries.region is None else carries.region.value,
@@ -41,22 +36,11 @@ def carries_dict(carries: Carries | None, groups: Sequence[GroupSlopes]) -> Json
     }
 
 
-def _sensitivities(
-    inputs: Sequence[Sensitivity],
-    exit_points_per_m: FloatArray,
-    method: str,
-    group: str | None = None,
-) -> list[Json]:
-    rows: list[Json] = [asdict(sensitivity) for sensitivity in inputs]
-    for cable, slopes in enumerate(exit_points_per_m, start=1):
-        rows += [
-            {
-                "input": f"exit_point_{cable}_{axis}",
-                "value": None,
-                "unit": "m",
-                "derivative": slope,
-                "elasticity": None,
-            }
-            for axis, slope in zip("xyz", slopes.tolist(), strict=True)
-        ]
-    return [row | {"method": method, "group": group} for row in rows]
+def _sensitivities(of_ropes: Iterable[Sensitivities]) -> Iterator[Json]:
+    for of_rope in of_ropes:
+        rows: list[Json] = [asdict(sensitivity) for sensitivity in of_rope.each]
+        for (cable, axis), slope in np.ndenumerate(of_rope.exit_points_per_m):
+            name = f"exit_point_{cable + 1}_{'xyz'[axis]}"
+            rows.append(asdict(Sensitivity(name, math.nan, "m", float(slope), math.nan)))
+        group = of_rope.group and of_rope.group.name
+        yield from (row | {"method": of_rope.method, "group": group} for row in rows)

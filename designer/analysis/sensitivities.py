@@ -2,24 +2,32 @@
 
 The governing pose is the worst of its region, so it may be held: what it gains by moving is of
 second order (the envelope theorem). Only where it lies on a side of the region does it move, with
-that side. On kept lengths, after the loss of a cable or a change of temperature, when the platform
-rests elsewhere, slopes are differences of solved states.
+that side. With ropes for groups of cables each group has its own. On kept lengths, after the loss
+of a cable or a change of temperature, when the platform rests elsewhere, slopes are differences of
+solved states.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from designer.arrays import FloatArray
-from designer.model.load_case import Loaded
+from designer.arrays import FloatArray, IntArray
+from designer.model.cable import Cables
+from designer.model.load_case import STATIC, Loaded
+from designer.model.region import Region
+from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
+from designer.selection.assignment import Assignment
 from designer.selection.cases import CaseResult
 from designer.statics.geometry import load_wrench_N
+from designer.statics.inverse import solve_sagging
 from designer.statics.slopes import Slopes, utilisation_slopes
+from designer.study import CableGroup
 
 _STEP = 1e-4
 _ALIKE = 1e-6
@@ -52,77 +60,129 @@ class Sensitivity:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sensitivities:
-    """What the utilisation answers to.
+    """What the utilisation of a rope answers to, where it is used most.
 
     Parameters
     ----------
+    utilisation : float
+        Now.
     each : tuple of Sensitivity
-        Payload (a factor on weight and loads of the platform, with its inertia), breaking load,
-        efficiency, modulus, mass of the rope, and region (metres by which its sides move outward).
+        Payload (a factor on weight and loads of the platform, with its inertia), breaking load and
+        efficiency of the rope, modulus, mass of the rope, and region (metres by which its sides
+        move outward). With ropes for groups ``modulus_`` and ``linear_mass_`` of the rope of each
+        group, also of those that carry less.
     exit_points_per_m : array (n_cables, 3)
         Slope in each exit point, base frame [1/m]; NaN where there is none.
     method : str
         ``adjoint`` or ``differences``.
     why_not : str
         Why there are no slopes, or not all, for the reader of a report; empty where there are.
+    group : CableGroup or None
+        The group that the rope is for; None of one for all cables.
     """
 
+    utilisation: float
     each: tuple[Sensitivity, ...]
     exit_points_per_m: FloatArray
-    method: str
+    method: str = "adjoint"
     why_not: str = ""
+    group: CableGroup | None = None
 
     def of(self, name: str) -> Sensitivity:
         """Return one of them by its name."""
         return next(slope for slope in self.each if slope.input == name)
 
 
+_Mounted = tuple[str, IntArray, Loaded]
+"""A rope: what its inputs are called by, the cables it is on (from 0), and with its load."""
+
+
 def sensitivities(case: CaseResult, efficiency: float, breaking_load_N: float) -> Sensitivities:
     """Return the slopes at the worst pose of a load case, of a rope with these figures."""
+    figures = breaking_load_N, efficiency
     if case.loaded.keeps_lengths:
-        return _by_differences(case, efficiency, breaking_load_N)
-    statics = case.statics
-    solved = statics is not None and bool(statics.is_solved[0])
+        return _by_differences(case, figures)
     ties: tuple[Slopes, ...] = ()
-    if statics is not None and solved:
-        ties = utilisation_slopes(statics, case.loaded.cable.allowable_tension_N)
-    n_cables = case.loaded.robot.n_cables
+    if case.statics is not None and case.statics.is_solved[0]:
+        ties = utilisation_slopes(case.statics, case.loaded.cable.allowable_tension_N)
+    why = ""
     if not ties:
-        unknown = dict.fromkeys(("payload", "modulus", "linear_mass", "region"), math.nan)
         why = (
             "The internal forces that are best here are at a corner at which several choices are "
             "as good, so that the utilisation has no slope."
         )
-        inputs = _named(case, efficiency, breaking_load_N, unknown)
-        return Sensitivities(inputs, np.full((n_cables, 3), np.nan), "adjoint", why)
-    rows = [_adjoint(case, slopes) for slopes in ties]
-    slopes_of = {name: _agreed([row[name] for row in rows]) for name in rows[0]}
-    exits = np.stack([slopes.exit_points_per_m for slopes in ties])
-    alike = np.ptp(exits, axis=0) <= _ALIKE * np.abs(exits).max()
-    why = ""
-    if len(ties) > 1:
+    elif len(ties) > 1:
         cables = " and ".join(str(slopes.cable) for slopes in ties)
         why = f"Cables {cables} are used alike: where only one of them gains, there is no slope."
-    inputs = _named(case, efficiency, breaking_load_N, slopes_of)
-    return Sensitivities(inputs, np.where(alike, exits[0], np.nan), "adjoint", why)
+    ropes = [("", np.arange(case.loaded.robot.n_cables), case.loaded)]
+    slopes, exits = _by_adjoint(ties, ropes, case.pose, case.workspace.region)
+    used = case.utilisation
+    return Sensitivities(used, _named(used, figures, ropes, slopes), exits, why_not=why)
 
 
-def _adjoint(case: CaseResult, slopes: Slopes) -> dict[str, float]:
-    """Return slopes in the logarithms of payload, modulus and mass, and in the region [1/m]."""
-    loaded = case.loaded
-    heavier = load_wrench_N(with_payload(loaded, 2.0).robot, case.pose)[0]
-    more = heavier - load_wrench_N(loaded.robot, case.pose)[0]
-    load = _cable_load(with_density(loaded, 2.0)) - _cable_load(loaded)
-    side = case.workspace.region.outward(case.pose.position_m[0])
-    return {
-        "payload": float(slopes.load @ more),
-        "modulus": float(slopes.stiffness.sum()),
-        "linear_mass": float(slopes.cable_load_m_per_N.sum(axis=0) @ load),
-        "region": float(slopes.position_per_m @ side),
-    }
+def group_sensitivities(
+    robot: Robot, workspace: Workspace | None, assignment: Assignment
+) -> tuple[Sensitivities, ...]:
+    """Return the slopes of each group of cables; none where no ropes for groups were found."""
+    if workspace is None or not assignment.has_groups:
+        return ()
+    return tuple(
+        _of_group(robot, workspace.region, assignment, g) for g in range(len(assignment.groups))
+    )
 
 
-def _by_differences(case: CaseResult, efficiency: float, breaking_load_N: float) -> Sensitivities:
+def _of_group(robot: Robot, region: Region, assignment: Assignment, g: int) -> Sensitivities:
+    cables = Cables(tuple(rope.cable for rope in assignment.by_cable))
+    ropes: list[_Mounted] = [
+        (f"_{group.name}", np.array(group.cables) - 1, Loaded(STATIC, bare, *bare))
+        for group, rope in zip(assignment.groups, assignment.ropes, strict=True)
+        for bare in [(robot, rope.cable)]
+    ]
+    statics = solve_sagging(robot, Poses.at(assignment.verification.worst_place[g, None]), cables)
+    of_group, rope = ropes[g][1], assignment.ropes[g]
+    used = statics.cable_tension_N[0, of_group] / rope.cable.allowable_tension_N
+    cable = int(of_group[used.argmax()])
+    ties = utilisation_slopes(statics, cables.allowable_tension_N, cable + 1)
+    slopes, exits = _by_adjoint(ties, ropes, statics.poses, region)
+    figures = rope.size.minimum_breaking_load_N, rope.efficiency
+    named = _named(float(used.max()), figures, ropes, slopes)
+    why = (
+        "Cables of other groups are used more there, or the internal forces that are best "
+        "leave a choice, so that the utilisation has no slope."
+    )
+    return Sensitivities(
+        float(used.max()), named, exits, why_not="" if ties else why, group=assignment.groups[g]
+    )
+
+
+def _by_adjoint(
+    ties: Sequence[Slopes], ropes: Sequence[_Mounted], pose: Poses, region: Region
+) -> tuple[dict[str, float], FloatArray]:
+    """Return slopes by their names and in the exit points, NaN where cables that tie differ."""
+    if not ties:
+        return {}, np.full((ropes[0][2].robot.n_cables, 3), np.nan)
+    rows = [dict(_slopes_at(slopes, ropes, pose, region)) for slopes in ties]
+    exits = np.stack([slopes.exit_points_per_m for slopes in ties])
+    alike = np.ptp(exits, axis=0) <= _ALIKE * np.abs(exits).max()
+    agreed = {name: _agreed([row[name] for row in rows]) for name in rows[0]}
+    return agreed, np.where(alike, exits[0], np.nan)
+
+
+def _slopes_at(
+    slopes: Slopes, ropes: Sequence[_Mounted], pose: Poses, region: Region
+) -> Iterator[tuple[str, float]]:
+    """Yield slopes in the logarithms of payload, modulus and mass, and in the region [1/m]."""
+    loaded = ropes[0][2]
+    heavier = load_wrench_N(with_payload(loaded, 2.0).robot, pose)[0]
+    yield "payload", float(slopes.load @ (heavier - load_wrench_N(loaded.robot, pose)[0]))
+    yield "region", float(slopes.position_per_m @ region.outward(pose.position_m[0]))
+    for name, cables, rope in ropes:
+        load = _cable_load(with_density(rope, 2.0)) - _cable_load(rope)
+        yield f"modulus{name}", float(slopes.stiffness[cables].sum())
+        yield f"linear_mass{name}", float(slopes.cable_load_m_per_N[cables].sum(axis=0) @ load)
+
+
+def _by_differences(case: CaseResult, figures: tuple[float, float]) -> Sensitivities:
     loaded, place = case.loaded, case.verification.worst_place
     side = np.zeros_like(place)
     side[:3] = case.workspace.region.outward(place[:3])
@@ -149,25 +209,41 @@ def _by_differences(case: CaseResult, efficiency: float, breaking_load_N: float)
         exits[cable, axis] = slope(partial(with_exit_moved, loaded, cable, axis))
     finite = np.isfinite([*slopes.values(), *exits.ravel()]).all()
     why = "" if finite else "Near this pose the platform finds no rest on the kept lengths."
-    inputs = _named(case, efficiency, breaking_load_N, slopes)
-    return Sensitivities(inputs, np.where(np.isfinite(exits), exits, np.nan), "differences", why)
+    ropes = [("", np.arange(len(exits)), loaded)]
+    inputs = _named(case.utilisation, figures, ropes, slopes)
+    exits = np.where(np.isfinite(exits), exits, np.nan)
+    return Sensitivities(case.utilisation, inputs, exits, "differences", why)
 
 
 def _named(
-    case: CaseResult, efficiency: float, breaking_load_N: float, slopes: dict[str, float]
+    used: float,
+    figures: tuple[float, float],
+    ropes: Sequence[_Mounted],
+    slopes: Mapping[str, float],
 ) -> tuple[Sensitivity, ...]:
-    used, cable = case.utilisation, case.loaded.bare[1]
+    """Return slopes in logarithms, and in the region [1/m], NaN where there is none.
+
+    ``figures`` are breaking load [N] and efficiency of the rope.
+    """
 
     def relative(name: str, value: float, unit: str, slope: float) -> Sensitivity:
         return Sensitivity(name, value, unit, slope / value, slope / used)
 
+    bare = [(name, loaded.bare[1]) for name, _, loaded in ropes]
+    every = {
+        f"{quantity}{name}": (value, unit)
+        for name, cable in bare
+        for quantity, value, unit in (
+            ("modulus", cable.axial_stiffness_N, "N"),
+            ("linear_mass", cable.linear_density_kg_per_m, "kg/m"),
+        )
+    }
     return (
-        relative("payload", 1.0, "", slopes["payload"]),
-        relative("breaking_load", breaking_load_N, "N", -used),
-        relative("efficiency", efficiency, "", -used),
-        relative("modulus", cable.axial_stiffness_N, "N", slopes["modulus"]),
-        relative("linear_mass", cable.linear_density_kg_per_m, "kg/m", slopes["linear_mass"]),
-        Sensitivity("region", 0.0, "m", slopes["region"], math.nan),
+        relative("payload", 1.0, "", slopes.get("payload", math.nan)),
+        relative("breaking_load", figures[0], "N", -used),
+        relative("efficiency", figures[1], "", -used),
+        *(relative(name, *of, slopes.get(name, math.nan)) for name, of in every.items()),
+        Sensitivity("region", 0.0, "m", slopes.get("region", math.nan), math.nan),
     )
 
 

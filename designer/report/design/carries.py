@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.analysis.carries import Carries
-from designer.analysis.group_slopes import GroupSlopes
+from designer.analysis.sensitivities import Sensitivities
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
 
@@ -93,8 +93,8 @@ def _reason(name: str) -> str:
     return name if verdict is None else verdict.clause
 
 
-def _of_groups(groups: tuple[GroupSlopes, ...]) -> Mapping[str, object]:
-    names = [group.group.name for group in groups]
+def _of_groups(groups: tuple[Sensitivities, ...]) -> Mapping[str, object]:
+    names = [group.group.name for group in groups if group.group]
     inputs = [(key, name) for key, name in _NAMES.items() if key in _OF_ALL_GROUPS]
     inputs += [(f"modulus_{name}", f"Stiffness EA of {name}") for name in names]
     inputs += [(f"linear_mass_{name}", f"Mass of the rope of {name}") for name in names]
@@ -113,7 +113,7 @@ def _of_groups(groups: tuple[GroupSlopes, ...]) -> Mapping[str, object]:
     }
 
 
-def _group_moves(groups: tuple[GroupSlopes, ...]) -> Iterator[tuple[str, list[float]]]:
+def _group_moves(groups: tuple[Sensitivities, ...]) -> Iterator[tuple[str, list[float]]]:
     """Yield what moves outward, and the exit points that matter most, with the slopes [1/m]."""
     region = [group.of("region").derivative for group in groups]
     if any(region):
