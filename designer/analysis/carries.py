@@ -15,8 +15,7 @@ from designer.study import Study
 
 
 def _named_size(candidate: Candidate) -> dict[str, object]:
-    names = {"grade": candidate.grade.id, "size_id": candidate.size.id}
-    return {**names, "total_mass_kg": candidate.total_mass_kg}
+    return {**candidate.ids, "total_mass_kg": candidate.total_mass_kg}
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -36,10 +36,6 @@ _CHUNK = 2**18
 _THIN_M = 1e-3
 
 
-def _named_product(candidate: Candidate) -> dict[str, Any]:
-    return {"grade": candidate.grade.id, "size_id": candidate.size.id}
-
-
 def _named_use(verification: Verification) -> dict[str, Any]:
     names = ("max_tension_N", "utilisation")
     return {name: getattr(verification, name) for name in names}
@@ -64,7 +60,7 @@ class MasslessChoice:
     it really meets in the workspace.
     """
 
-    candidate: Candidate = field(metadata={"json": _named_product})
+    candidate: Candidate = field(metadata={"json": lambda rope: rope.ids})
     verification: Verification = field(metadata={"json": _named_use})
 
     also_in_files: ClassVar = ("safety_factor",)

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
-from designer.model.robot import Poses
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult
 from designer.statics.inverse import Statics
-from designer.statics.pulleys import PulleyRun
 from designer.statics.shape import sag_m, stretch_m, string_frequency_Hz
 
 
@@ -84,17 +82,7 @@ class GoverningPose:
     @property
     def alone(self) -> Statics:
         """The equilibrium without its leading axis."""
-        statics, run, poses = self.statics, self.statics.run, self.statics.poses
-        names = (
-            *("verdict", "weight_N_per_m", "axial_stiffness_N"),
-            *("length_m", "force_x_N", "force_z_N"),
-        )
-        return replace(
-            statics,
-            poses=Poses(poses.position_m[0], poses.rotation.reshape(-1, 3, 3)[0]),
-            run=PulleyRun(run.exit_points_m.reshape(-1, 3), run.wrap_m.reshape(-1)),
-            **{name: getattr(statics, name)[0] for name in names},
-        )
+        return self.statics.part(0)
 
     @property
     def closure_residual_m(self) -> float:

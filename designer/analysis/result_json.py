@@ -5,26 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-import numpy as np
-
 from designer import __version__
 from designer.analysis.analyse import Analysis
 from designer.analysis.carries_json import carries_dict
 from designer.analysis.load_cases_json import load_cases_dict
 from designer.analysis.pose import PoseAnalysis
-from designer.analysis.selection_json import groups_dict, selection_dict
+from designer.analysis.selection_json import selection_dict
 from designer.analysis.uncertainty_json import uncertainty_dict
-from designer.arrays import FloatArray
 from designer.documents.formats import RESULT_FORMAT
 from designer.documents.plain import plain, record
-from designer.model.space import turn_of
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.selection.qualities import Qualities
 from designer.study import Study
-from designer.workspace.hanging import Hanging, HangingCables
 from designer.workspace.interference import Interference
-from designer.workspace.result import Extreme, WorkspaceMap
 
 Json = dict[str, Any]
 IsRead = Callable[[str], bool]
@@ -55,7 +49,7 @@ def result_dict(analysis: Analysis, is_read: IsRead = _everything) -> Json:
             "inputs": {entry.field: entry.value_SI for entry in study.source.entries},
             "pose": _pose(analysis, is_read),
             "workspace": _workspace(analysis, is_read),
-            "selection": None if analysis.selection is None else _selection(analysis),
+            "selection": selection_dict(analysis.selection, analysis.groups),
             **load_cases_dict(analysis),
             **carries_dict(
                 analysis.carries if carries else None, analysis.group_slopes if carries else ()
@@ -136,12 +130,7 @@ def _products(analysis: Analysis) -> Json:
     """Return what to put on each cable, by groups of them: one rope for all has no name."""
     assignment = analysis.assignment
     products = [
-        {
-            "name": group.name or None,
-            "cables": group.cables,
-            "grade": rope.grade.id,
-            "size_id": rope.size.id,
-        }
+        {"name": group.name or None, "cables": group.cables, **rope.ids}
         for group, rope in zip(assignment.groups, assignment.ropes, strict=True)
     ]
     return {"products": products, "total_mass_kg": assignment.total_mass_kg}
@@ -195,52 +184,11 @@ def _workspace(analysis: Analysis, is_read: IsRead) -> Json | None:
         return None
     of_the_choice = any(is_read(f"workspace.{name}") for name in _OF_THE_CHOICE)
     return {
-        **_map(analysis.workspace),
+        **record(analysis.workspace),
         "orientations": _orientations(analysis.study),
         "section_m": analysis.section_m,
         "servable": analysis.servable if is_read("workspace.servable") else None,
         **_qualities(analysis.qualities if of_the_choice else None),
-    }
-
-
-def _map(survey: WorkspaceMap) -> Json:
-    census = survey.census
-    return {
-        "samples": census.samples,
-        "feasible": survey.is_feasible,
-        "reason": None if survey.is_feasible else _why_infeasible(survey),
-        "statuses": dict(census.statuses),
-        "hangs_below": census.hangs_below,
-        "excluded": census.excluded,
-        **_hanging(census.hanging),
-        "fraction_no_finite_cable": census.fraction(Verdict.NO_FINITE_CABLE.label),
-        "infeasible_example_m": survey.infeasible_example_m,
-        **_turn(survey.infeasible_rotation_vector_rad, "infeasible_rotation_vector"),
-        "limit_ratio": survey.limit_ratio,
-        "sagging": _extreme(survey.sagging),
-        "sampled": _extreme(survey.sampled),
-        "massless": _extreme(survey.massless),
-    }
-
-
-def _hanging(cables: HangingCables) -> Json:
-    """Return how many samples have a cable that hangs too far, and the worst of them."""
-    return {
-        "long_cables": _worst_hanging(cables.long, "length_over_chord"),
-        "below_floor": _worst_hanging(cables.below_floor, "lowest_m"),
-    }
-
-
-def _worst_hanging(worst: Hanging | None, name: str) -> Json:
-    if worst is None:
-        return {"samples": 0}
-    place = np.array(worst.place)
-    return {
-        "samples": worst.samples,
-        name: worst.extreme,
-        "cable": worst.cable,
-        "pose": place[:3],
-        **_turn(turn_of(place)),
     }
 
 
@@ -261,7 +209,7 @@ def _qualities(qualities: Qualities | None) -> Json:
     return {
         "stiffness": None if qualities is None else qualities.stiffness,
         "interference": None if interference is None else _interference(interference),
-        "hanging": None if qualities is None else _hanging(qualities.hanging),
+        "hanging": None if qualities is None else qualities.hanging,
     }
 
 
@@ -279,41 +227,8 @@ def _interference(survey: Interference) -> Json:
     }
 
 
-def _why_infeasible(survey: WorkspaceMap) -> str:
-    counts = survey.census.statuses
-    unserved = [v for v in Verdict if v is not Verdict.SOLVED and counts[v.label] > 0]
-    if unserved:
-        return " ".join(f"{counts[v.label]} samples: {v.sentence}" for v in unserved)
-    if survey.infeasible_example_m is None:
-        return "Every pose is left out."
-    return "The search between the samples met a pose without a finite cable."
-
-
-def _selection(analysis: Analysis) -> Json:
-    assert analysis.selection is not None
-    return {**selection_dict(analysis.selection), **groups_dict(analysis.groups)}
-
-
 def _proof(analysis: Analysis) -> Json:
     """Return what is proved of the chosen rope; off where nothing was to be."""
     case = None if analysis.selection is None else analysis.selection.proof
     proof = Proof("off") if case is None else case.proof
     return {**record(proof), "load_case": None if case is None else case.load_case or None}
-
-
-def _extreme(extreme: Extreme | None) -> Json | None:
-    if extreme is None:
-        return None
-    return {
-        "diameter_m": extreme.diameter_m,
-        "max_tension_N": extreme.max_tension_N,
-        "pose": extreme.position_m,
-        **_turn(extreme.rotation_vector_rad),
-    }
-
-
-def _turn(rotation_vector_rad: FloatArray | None, name: str = "rotation_vector") -> Json:
-    """Return the orientation; nothing where the platform is not turned."""
-    if rotation_vector_rad is None or not rotation_vector_rad.any():
-        return {}
-    return {name: rotation_vector_rad}

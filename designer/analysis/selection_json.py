@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
+from designer.arrays import FloatArray
 from designer.documents.csv_text import csv_text
-from designer.documents.plain import finite
+from designer.documents.plain import plain, record
 from designer.model.space import turn_of
+from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate
 from designer.selection.groups.result import GroupChoice
 from designer.selection.result import GradeOutcome, SelectionResult
@@ -21,143 +23,86 @@ _LISTS = {
     "worst_rotation_vector": "worst_rotation_vector_{}_rad",
 }
 """Columns of ``candidates.csv`` that one key becomes, numbered from 1."""
-_CANDIDATE = {
-    "grade": "grade.id",
-    "size_id": "size.id",
-    "diameter_m": "size.diameter_m",
-    "continuous_diameter_m": "continuous_diameter_m",
-    "max_tension_N": "verification.max_tension_N",
-    "utilisation": "verification.utilisation",
-    "minimum_breaking_load_N": "size.minimum_breaking_load_N",
-    "efficiency": "efficiency",
-    "allowable_tension_N": "cable.allowable_tension_N",
-    "linear_mass_kg_per_m": "size.linear_density_kg_per_m",
-    "as_built_linear_mass_kg_per_m": "cable.linear_density_kg_per_m",
-    "axial_stiffness_N": "cable.axial_stiffness_N",
-    "total_mass_kg": "total_mass_kg",
-    "drum_diameter_m": "figures.drum_diameter_m",
-    "cost": "figures.cost",
-    "stiffness_N_per_m": "figures.stiffness_N_per_m",
-    "longest_m": "verification.longest_m",
-    "shortest_m": "verification.shortest_m",
-    "worst_pose": "verification.worst_place",
-    "worst_rotation_vector": "verification.worst_place",
-    "verified": "verified",
-    "refined": "verification.is_refined",
-    "standing": "standing",
-    "why": "reason",
-}
-"""Of each key where its value is found."""
-_PRODUCT = ("grade", "size_id", "diameter_m", "allowable_tension_N", "linear_mass_kg_per_m")
-_CHOICE = {
-    "objective": "objective",
-    "unit": "unit",
-    "max_distinct_products": "most_distinct",
-    "total_mass_kg": "chosen.total_mass_kg",
-    "total": "total",
-    "bound": "bound",
-    "gap": "gap",
-    "proof": "proof",
-    "proof_sentence": "proof_sentence",
-    "single_product_mass_kg": "single.total_mass_kg",
-    "saving_kg": "saving_kg",
-    "offered": "offered",
-    "trials": "trials",
-}
 
 
-def _plain(result: object, table: Mapping[str, str]) -> Json:
-    """Return the values that a table names, None for what belongs to a part that is None."""
-
-    def value(path: str) -> Any:
-        part: Any = result
-        for name in path.split("."):
-            part = None if part is None else getattr(part, name)
-        return finite(part)
-
-    return {key: value(path) for key, path in table.items()}
-
-
-def selection_dict(selection: SelectionResult) -> Json:
-    """Return everything that ``result.json`` holds of a choice; a missing number is None."""
+def selection_dict(selection: SelectionResult | None, choice: GroupChoice | None) -> Json | None:
+    """Return everything that ``result.json`` holds of a choice; None where none was to be made."""
+    if selection is None:
+        return None
     rows = {
         id(c): candidate_dict(c, o)
         for o in (*selection.outcomes, *selection.alternatives)
         for c in o.candidates
     }
     chosen, usable = selection.chosen, selection.usable
-    grade_id, sizes = (usable.grade.id, usable.sizes) if usable else (None, ())
-    grade = {
-        "grade": "grade.id",
-        "outcome": "outcome",
-        "sentence": "sentence",
-        "continuous_diameter_m": "continuous_diameter_m",
-        "best_size_id": "best.size.id",
-    }
-    part = {"size_id": "size.id", "diameter_m": "size.diameter_m"}
-    part |= {name: name for name in ("volume_m3", "fraction", "lost_fraction")}
-    left_out = {"grade": "grade.id", "size_id": "size.id", "reason": "reason"}
     return {
-        "objectives": list(selection.objectives),
+        "objectives": selection.objectives,
         "currency": selection.currency,
         "chosen": None if chosen is None else rows[id(chosen)],
         "reason": selection.reason,
         "pareto": [rows[id(c)] for c in selection.front],
         "candidates": [rows[id(c)] for c in selection.candidates],
-        "not_tried": [_plain(row, left_out) for row in selection.not_tried],
-        "grades": [_plain(row, grade) for row in selection.outcomes],
+        "not_tried": selection.not_tried,
+        "grades": selection.outcomes,
         "alternatives": [rows[id(o.best)] for o in selection.alternatives if o.best],
-        "usable": [_plain(row, part) | {"grade": grade_id} for row in sizes],
+        "usable": [record(size) | {"grade": usable.grade.id} for size in usable.sizes]
+        if usable
+        else [],
+        "groups": [] if choice is None else list(_groups(choice.chosen)),
+        "group_choice": choice,
     }
 
 
 def candidate_dict(candidate: Candidate, outcome: GradeOutcome) -> Json:
     """Return one candidate under the names that scripts rely on."""
-    figures = _plain(candidate, _CANDIDATE) | _place(candidate.verification.worst_place)
-    trust = {"trust": candidate.grade.trust, "doubt": candidate.size.doubt}
-    return {**figures, "outcome": outcome.outcome, **trust}
-
-
-def _place(place: Any) -> Json:
+    verification, size, cable = candidate.verification, candidate.size, candidate.cable
     return {
-        "worst_pose": finite(place[:3]),
-        "worst_rotation_vector": finite(turn_of(place)),
+        **candidate.ids,
+        "diameter_m": size.diameter_m,
+        "continuous_diameter_m": candidate.continuous_diameter_m,
+        "max_tension_N": verification.max_tension_N,
+        "utilisation": verification.utilisation,
+        "minimum_breaking_load_N": size.minimum_breaking_load_N,
+        "efficiency": candidate.efficiency,
+        "allowable_tension_N": cable.allowable_tension_N,
+        "linear_mass_kg_per_m": size.linear_density_kg_per_m,
+        "as_built_linear_mass_kg_per_m": cable.linear_density_kg_per_m,
+        "axial_stiffness_N": cable.axial_stiffness_N,
+        "total_mass_kg": candidate.total_mass_kg,
+        "drum_diameter_m": candidate.figures.drum_diameter_m,
+        "cost": candidate.figures.cost,
+        "stiffness_N_per_m": candidate.figures.stiffness_N_per_m,
+        "longest_m": verification.longest_m,
+        "shortest_m": verification.shortest_m,
+        **_place(verification.worst_place),
+        "verified": candidate.verified,
+        "refined": verification.is_refined,
+        "standing": candidate.standing,
+        "why": candidate.reason,
+        "outcome": outcome.outcome,
+        "trust": candidate.grade.trust,
+        "doubt": size.doubt,
     }
 
 
-def groups_dict(choice: GroupChoice | None) -> Json:
-    """Return ``groups`` and ``group_choice``; empty and None where a study has no groups."""
-    if choice is None:
-        return {"groups": [], "group_choice": None}
-    figures = _plain(choice, _CHOICE)
-    figures["bound_kg"] = figures["bound"] if choice.objective == "mass" else None
-    return {
-        "groups": list(_groups(choice)),
-        "group_choice": {**figures, "proposals": list(_proposals(choice))},
-    }
+def _place(place: FloatArray) -> Json:
+    return {"worst_pose": place[:3], "worst_rotation_vector": turn_of(place)}
 
 
-def _groups(choice: GroupChoice) -> Iterator[Json]:
-    chosen, verification = choice.chosen, choice.chosen.verification
+def _groups(chosen: Assignment) -> Iterator[Json]:
+    verification = chosen.verification
     for k, (group, rope) in enumerate(zip(chosen.groups, chosen.ropes, strict=True)):
         yield {
             "name": group.name,
-            "cables": list(group.cables),
-            **_plain(rope, {key: _CANDIDATE[key] for key in (*_PRODUCT, "axial_stiffness_N")}),
-            "utilisation": finite(verification.utilisation[k]),
-            "longest_m": finite(verification.longest_m[[c - 1 for c in group.cables]]),
+            "cables": group.cables,
+            **rope.ids,
+            "diameter_m": rope.size.diameter_m,
+            "allowable_tension_N": rope.cable.allowable_tension_N,
+            "linear_mass_kg_per_m": rope.size.linear_density_kg_per_m,
+            "axial_stiffness_N": rope.cable.axial_stiffness_N,
+            "utilisation": verification.utilisation[k],
+            "longest_m": verification.longest_m[[c - 1 for c in group.cables]],
             **_place(verification.worst_place[k]),
-        }
-
-
-def _proposals(choice: GroupChoice) -> Iterator[Json]:
-    names = ("bound", "total", "outcome", "utilisation", "excluded", "guided")
-    for proposal in choice.proposals:
-        yield {
-            **_plain(proposal, {name: name for name in names}),
-            "products": [{"grade": p.grade.id, "size_id": p.size.id} for p in proposal.products],
-            "group": None if proposal.group is None else choice.groups[proposal.group].name,
-            "pose": finite(proposal.place),
         }
 
 
@@ -166,7 +111,7 @@ def candidates_csv(selection: SelectionResult) -> str:
     rows = []
     for candidate, outcome in ((c, o) for o in selection.outcomes for c in o.candidates):
         row: Json = {}
-        for name, value in candidate_dict(candidate, outcome).items():
+        for name, value in plain(candidate_dict(candidate, outcome)).items():
             parts = enumerate(value, start=1) if name in _LISTS else [(0, value)]
             row |= {_LISTS.get(name, name).format(k): part for k, part in parts}
         rows.append(row)

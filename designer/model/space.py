@@ -77,6 +77,12 @@ def turn_of(place: FloatArray) -> FloatArray:
     return place[3:] if len(place) > 3 else np.zeros(3)
 
 
+def named_turn(place: FloatArray, name: str = "rotation_vector") -> dict[str, FloatArray]:
+    """Return the orientation of a place as files of results name it; none if it is not turned."""
+    turn = turn_of(place)
+    return {name: turn} if turn.any() else {}
+
+
 def named_position(place: FloatArray) -> dict[str, FloatArray]:
     """Return a place (n_coordinates,) as files of results name its position."""
     return {"pose": place[:3]}

@@ -79,6 +79,11 @@ class Candidate:
         return f"{self.grade.id}, {self.size.id}"
 
     @property
+    def ids(self) -> dict[str, str]:
+        """Grade and size as files of results name them."""
+        return {"grade": self.grade.id, "size_id": self.size.id}
+
+    @property
     def label(self) -> str:
         """Size and grade in one line."""
         return f"{self.size.id} of {self.grade.id}"

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
 
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Material
@@ -15,14 +15,15 @@ from designer.selection.usable import Usable
 from designer.study import Objective
 
 Outcome = Literal["fits", "rejected", "too_thin", "no_finite_cable", "open"]
+_BY_ID = {"json": lambda grade: {"grade": grade.id}}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NotTried:
     """A grade, or one size of it, that was not solved, and why; ``size`` is None for the grade."""
 
-    grade: Grade
-    size: Size | None
+    grade: Grade = field(metadata=_BY_ID)
+    size: Size | None = field(metadata={"json": lambda size: {"size_id": size and size.id}})
     reason: str
 
 
@@ -50,13 +51,17 @@ class GradeOutcome:
         Of the pose that no member of the family holds; None where there is none.
     """
 
-    grade: Grade
-    family: Material
+    grade: Grade = field(metadata=_BY_ID)
+    family: Material = field(metadata={"json": None})
     continuous_diameter_m: float
-    candidates: tuple[Candidate, ...]
+    candidates: tuple[Candidate, ...] = field(metadata={"json": None})
     outcome: Outcome
-    best: Candidate | None
-    verdict: Verdict | None = None
+    best: Candidate | None = field(
+        metadata={"json": lambda best: {"best_size_id": best and best.size.id}}
+    )
+    verdict: Verdict | None = field(default=None, metadata={"json": None})
+
+    also_in_files: ClassVar = ("sentence",)
 
     @property
     def fails_in(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -39,8 +39,8 @@ class UsableSize:
         be weaker, or too heavy for what it bears.
     """
 
-    size: Size
-    cable: Cable
+    size: Size = field(metadata={"json": lambda s: {"size_id": s.id, "diameter_m": s.diameter_m}})
+    cable: Cable = field(metadata={"json": None})
     fraction: float
     volume_m3: float | None
     lost_fraction: float = 0.0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray, VerdictArray
+from designer.arrays import BoolArray, FloatArray, IntArray, VerdictArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict, hanging_cables
@@ -64,6 +64,27 @@ class Statics:
     force_z_N: FloatArray
     run: PulleyRun
     force_N: FloatArray | None = None
+
+    def part(self, rows: int | IntArray) -> Statics:
+        """Return some of the poses by their numbers, without leading axes for a single number."""
+        n, shape = self.robot.n_cables, self.verdict.shape
+
+        def chosen(values: FloatArray, *rest: int) -> FloatArray:
+            return np.broadcast_to(values, (*shape, *rest)).reshape(-1, *rest)[rows]
+
+        run, poses = self.run, self.poses
+        return Statics(
+            robot=self.robot,
+            poses=Poses(chosen(poses.position_m, 3), chosen(poses.rotation, 3, 3)),
+            verdict=self.verdict.reshape(-1)[rows],
+            weight_N_per_m=chosen(self.weight_N_per_m, n),
+            axial_stiffness_N=chosen(self.axial_stiffness_N, n),
+            length_m=chosen(self.length_m, n),
+            force_x_N=chosen(self.force_x_N, n),
+            force_z_N=chosen(self.force_z_N, n),
+            run=PulleyRun(chosen(run.exit_points_m, n, 3), chosen(run.wrap_m, n)),
+            force_N=None if self.force_N is None else chosen(self.force_N, 3),
+        )
 
     @property
     def free_length_m(self) -> FloatArray:

@@ -96,8 +96,8 @@ def _in_chunks(
     solved = np.flatnonzero(statics.is_solved)
     for at in range(0, len(solved), _CHUNK):
         rows = solved[at : at + _CHUNK]
-        some = _some(statics, rows)
-        part = function(some, Curves.of(some))
+        poses = statics.part(rows)
+        part = function(poses, Curves.of(poses))
         if part is None:
             break
         row, tried = part
@@ -130,28 +130,6 @@ def cable_margin_m(robot: Robot, hull: Hull) -> FloatArray:
     than sin ψ times that quarter.
     """
     return np.asarray(0.25 * hull.extent_m + hull.depth_m(robot.attachments_m))
-
-
-def _some(statics: Statics, rows: IntArray) -> Statics:
-    """Return some poses of a batch as a batch of one axis."""
-    n = statics.robot.n_cables
-    shape = statics.verdict.shape
-
-    def chosen(values: FloatArray, *rest: int) -> FloatArray:
-        return np.broadcast_to(values, (*shape, *rest)).reshape(-1, *rest)[rows]
-
-    run = statics.run
-    return Statics(
-        robot=statics.robot,
-        poses=Poses(chosen(statics.poses.position_m, 3), chosen(statics.poses.rotation, 3, 3)),
-        verdict=statics.verdict.reshape(-1)[rows],
-        weight_N_per_m=chosen(statics.weight_N_per_m, n),
-        axial_stiffness_N=chosen(statics.axial_stiffness_N, n),
-        length_m=chosen(statics.length_m, n),
-        force_x_N=chosen(statics.force_x_N, n),
-        force_z_N=chosen(statics.force_z_N, n),
-        run=type(run)(chosen(run.exit_points_m, n, 3), chosen(run.wrap_m, n)),
-    )
 
 
 def _among_cables(statics: Statics, curves: Curves) -> tuple[IntArray, Clearance] | None:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
+from designer.model.space import named_turn
 from designer.model.workspace import Workspace
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.task import LONG
@@ -38,6 +40,21 @@ class Hanging:
     place: tuple[float, ...]
 
 
+def _named(name: str, extreme: str) -> dict[str, Any]:
+    """Return how files of results name one of the two kinds, and its worst value."""
+
+    def named(worst: Hanging | None) -> dict[str, Any]:
+        if worst is None:
+            return {name: {"samples": 0}}
+        place = np.array(worst.place)
+        pose = {"pose": place[:3], **named_turn(place)}
+        return {
+            name: {"samples": worst.samples, extreme: worst.extreme, "cable": worst.cable, **pose}
+        }
+
+    return {"json": named}
+
+
 @dataclass(frozen=True, slots=True)
 class HangingCables:
     """What hangs too far over a workspace; None where nothing does.
@@ -52,9 +69,9 @@ class HangingCables:
         Cables that hang below the floor; None also where the study has no floor.
     """
 
-    samples: int = 0
-    long: Hanging | None = None
-    below_floor: Hanging | None = None
+    samples: int = field(default=0, metadata={"json": None})
+    long: Hanging | None = field(default=None, metadata=_named("long_cables", "length_over_chord"))
+    below_floor: Hanging | None = field(default=None, metadata=_named("below_floor", "lowest_m"))
 
     def notes(self) -> Iterator[tuple[str, str]]:
         """Yield a heading and a few words for each of the two that there is."""

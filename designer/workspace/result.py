@@ -5,18 +5,28 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
-import numpy as np
-
-from designer.arrays import FloatArray, frozen_array
+from designer.arrays import FloatArray
+from designer.documents.plain import record
 from designer.model.robot import Poses
-from designer.model.space import turn_of
+from designer.model.space import named_turn, turn_of
+from designer.model.verdict import Verdict
 from designer.workspace.hanging import HangingCables
 from designer.workspace.store import open_sweep
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+def _named_place(place: FloatArray) -> dict[str, FloatArray]:
+    return {"pose": place[:3], **named_turn(place)}
+
+
+def _named_example(place: FloatArray | None) -> dict[str, FloatArray | None]:
+    if place is None:
+        return {"infeasible_example_m": None}
+    return {"infeasible_example_m": place[:3], **named_turn(place, "infeasible_rotation_vector")}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,30 +35,27 @@ class Extreme:
 
     Parameters
     ----------
-    position_m : array (3,)
-        Where it is [m].
+    place : array (n_coordinates,)
+        Where it is, and how the platform is turned there, see `designer.model.space` [m, rad].
     diameter_m : float
         The cable that it needs [m]; for a given cable, the diameter of that cable.
     max_tension_N : float
         The largest tension there [N].
-    rotation_vector_rad : array (3,)
-        How the platform is turned there [rad].
     """
 
-    position_m: FloatArray
+    place: FloatArray = field(metadata={"json": _named_place})
     diameter_m: float
     max_tension_N: float
-    rotation_vector_rad: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(3)))
-
-    @classmethod
-    def at(cls, place: FloatArray, diameter_m: float, max_tension_N: float) -> Extreme:
-        """Return the extreme at a place (n_coordinates,)."""
-        return cls(place[:3], diameter_m, max_tension_N, turn_of(place))
 
     @property
-    def place(self) -> FloatArray:
-        """Position and rotation vector in one array (6,) [m, rad]."""
-        return np.concatenate([self.position_m, self.rotation_vector_rad])
+    def position_m(self) -> FloatArray:
+        """Where it is (3,) [m]."""
+        return self.place[:3]
+
+    @property
+    def rotation_vector_rad(self) -> FloatArray:
+        """How the platform is turned there (3,) [rad]."""
+        return turn_of(self.place)
 
     @property
     def pose(self) -> Poses:
@@ -78,7 +85,14 @@ class Census:
     statuses: Mapping[str, int]
     hangs_below: int
     excluded: int
-    hanging: HangingCables = field(default_factory=HangingCables)
+    hanging: HangingCables = field(default_factory=HangingCables, metadata={"json": record})
+
+    also_in_files: ClassVar = ("fraction_no_finite_cable",)
+
+    @property
+    def fraction_no_finite_cable(self) -> float:
+        """Share of the samples that no section of the family can hold."""
+        return self.fraction(Verdict.NO_FINITE_CABLE.label)
 
     @property
     def is_all_left_out(self) -> bool:
@@ -109,26 +123,38 @@ class WorkspaceMap:
     massless : Extreme or None
         The worst pose of the region with straight weightless cables; None where they do not hold
         every pose that counts, because their tension can then grow without bound.
-    infeasible_example_m : array (3,) or None
-        A position without a finite cable, where there is one [m].
+    infeasible_place : array (n_coordinates,) or None
+        A place without a finite cable, where there is one [m, rad].
     limit_ratio : float
         Stress at infinite section over allowable stress at the worst pose; 1 is the boundary
         beyond which no cable exists. NaN if not feasible.
-    infeasible_rotation_vector_rad : array (3,) or None
-        How the platform is turned in that position [rad].
     file : Path or None
         NetCDF file with every sample, where one was written.
     """
 
-    census: Census
-    is_feasible: bool
+    census: Census = field(metadata={"json": record})
+    is_feasible: bool = field(metadata={"json": "feasible"})
     sagging: Extreme | None
     sampled: Extreme | None
     massless: Extreme | None
-    infeasible_example_m: FloatArray | None
+    infeasible_place: FloatArray | None = field(metadata={"json": _named_example})
     limit_ratio: float
-    infeasible_rotation_vector_rad: FloatArray | None = None
-    file: Path | None = None
+    file: Path | None = field(default=None, metadata={"json": None})
+
+    also_in_files: ClassVar = ("reason",)
+
+    @property
+    def reason(self) -> str | None:
+        """Why no cable of the family holds the whole region; None where one does."""
+        if self.is_feasible:
+            return None
+        counts = self.census.statuses
+        unserved = [v for v in Verdict if v is not Verdict.SOLVED and counts[v.label] > 0]
+        if unserved:
+            return " ".join(f"{counts[v.label]} samples: {v.sentence}" for v in unserved)
+        if self.infeasible_place is None:
+            return "Every pose is left out."
+        return "The search between the samples met a pose without a finite cable."
 
     def to_xarray(self) -> xr.Dataset:
         """Return every sample along ``sample``, with units in the attributes of each variable.
@@ -144,8 +170,11 @@ class WorkspaceMap:
             return sweep.load()
 
     @property
+    def infeasible_example_m(self) -> FloatArray | None:
+        """The position of that place [m]."""
+        return None if self.infeasible_place is None else self.infeasible_place[:3]
+
+    @property
     def infeasible_pose(self) -> Poses | None:
         """The pose without a finite cable, where there is one."""
-        if self.infeasible_example_m is None:
-            return None
-        return Poses.at(self.infeasible_example_m, self.infeasible_rotation_vector_rad)
+        return None if self.infeasible_place is None else Poses.at(self.infeasible_place)

@@ -15,7 +15,6 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.model.cable import Material
 from designer.model.robot import Poses, Robot
-from designer.model.space import turn_of
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.progress import Advance
@@ -96,7 +95,7 @@ class _Gathered:
         diameter_m = -np.inf if self.sampled is None else self.sampled.diameter_m
         if diameter[at] > diameter_m:
             tension = float(statics.largest_tension_N[at])
-            self.sampled = Extreme.at(places[at], float(diameter[at]), tension)
+            self.sampled = Extreme(places[at], float(diameter[at]), tension)
         served = statics.is_solved | left_out
         if self.infeasible_example is None and not served.all():
             self.infeasible_example = places[int(np.argmin(served))]
@@ -119,7 +118,7 @@ def _summarise(
         if np.isfinite(worst.demand):
             pose = Poses.at(worst.place)
             tension = float(size_poses(robot, pose, material).statics.largest_tension_N)
-            sagging = Extreme.at(worst.place, worst.demand, tension)
+            sagging = Extreme(worst.place, worst.demand, tension)
             ratio = float(limit_ratio(robot, pose, material))
         else:
             example = worst.place
@@ -129,15 +128,14 @@ def _summarise(
         (worst,) = refine_over_branches(workspace.space, demand, starts)
         if np.isfinite(worst.demand):
             diameter = material.diameter_for_tension_m(worst.demand)
-            massless = Extreme.at(worst.place, diameter, worst.demand)
+            massless = Extreme(worst.place, diameter, worst.demand)
     return WorkspaceMap(
         census=gathered.census(),
         is_feasible=sagging is not None,
         sagging=sagging,
         sampled=gathered.sampled,
         massless=massless,
-        infeasible_example_m=None if example is None else example[:3],
+        infeasible_place=example,
         limit_ratio=ratio,
-        infeasible_rotation_vector_rad=None if example is None else turn_of(example),
         file=file,
     )

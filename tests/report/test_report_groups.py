@@ -11,7 +11,6 @@ from report_parts import cells, facts, first_page, statements, table, tables
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
-from designer.analysis.selection_json import groups_dict
 from designer.cli.tables import summary_rows
 from designer.report.design.report import section as section_of
 from designer.report.design.source import Source
@@ -86,7 +85,7 @@ def test_plan_names_each_group(found: Analysis) -> None:
 
 
 def test_nothing_found_is_said(none: Analysis) -> None:
-    part = groups_dict(none.groups)
+    part = result_dict(none)["selection"]
     assert part["groups"] == []
     assert part["group_choice"]["proof"] == "infeasible"
     assert part["group_choice"]["total_mass_kg"] is None
@@ -98,8 +97,8 @@ def test_nothing_found_is_said(none: Analysis) -> None:
 def test_study_without_groups_has_none(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
     assert section_of(Source(analysis), "groups") is None
-    assert groups_dict(analysis.groups) == {"groups": [], "group_choice": None}
-    assert result_dict(analysis)["selection"]["group_choice"] is None
+    selection = result_dict(analysis)["selection"]
+    assert (selection["groups"], selection["group_choice"]) == ([], None)
 
 
 def test_groups_are_the_answer(found: Analysis) -> None:

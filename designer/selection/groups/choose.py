@@ -257,7 +257,7 @@ class _GroupSearch:
             bound=self.master.cost_of(combination),
             total=total,
             outcome=outcome,
-            group=worst.group if worst else None,
+            group=self.groups[worst.group] if worst else None,
             utilisation=worst.utilisation if worst else None,
             place=worst.place if worst else None,
             excluded=excluded,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
 
 from designer.arrays import FloatArray
 from designer.selection.assignment import Assignment
@@ -29,7 +29,7 @@ class TriedAssignment:
         The same with the lengths that it needs; None where that was not computed.
     outcome : str
         ``holds``, ``fails``, or ``not_better`` than what was known to hold.
-    group : int or None
+    group : CableGroup or None
         The group that is used most; None where its loads decided nothing.
     utilisation : float or None
         Of that group.
@@ -41,13 +41,17 @@ class TriedAssignment:
         Whether the linearisation had a say in it.
     """
 
-    products: tuple[Candidate, ...]
+    products: tuple[Candidate, ...] = field(
+        metadata={"json": lambda ropes: {"products": [rope.ids for rope in ropes]}}
+    )
     bound: float
     total: float | None
     outcome: Outcome
-    group: int | None
+    group: CableGroup | None = field(
+        metadata={"json": lambda group: {"group": group and group.name}}
+    )
     utilisation: float | None
-    place: FloatArray | None
+    place: FloatArray | None = field(metadata={"json": "pose"})
     excluded: int
     guided: bool
 
@@ -90,22 +94,33 @@ class GroupChoice:
         How many times cables were solved at the witnesses.
     """
 
-    groups: tuple[CableGroup, ...]
-    most_distinct: int
-    chosen: Assignment
+    groups: tuple[CableGroup, ...] = field(metadata={"json": None})
+    most_distinct: int = field(metadata={"json": "max_distinct_products"})
+    chosen: Assignment = field(
+        metadata={"json": lambda chosen: {"total_mass_kg": chosen.total_mass_kg}}
+    )
     total: float | None
-    single: Assignment
+    single: Assignment = field(
+        metadata={"json": lambda single: {"single_product_mass_kg": single.total_mass_kg}}
+    )
     objective: GroupObjective
     unit: str
     bound: float
     proof: Proof
-    by_balance: bool
-    by_weight: bool
-    lengths_are_bounds: bool
+    by_balance: bool = field(metadata={"json": None})
+    by_weight: bool = field(metadata={"json": None})
+    lengths_are_bounds: bool = field(metadata={"json": None})
     offered: int
-    catalogued: int
+    catalogued: int = field(metadata={"json": None})
     proposals: tuple[TriedAssignment, ...]
     trials: int
+
+    also_in_files: ClassVar = ("bound_kg", "gap", "proof_sentence", "saving_kg")
+
+    @property
+    def bound_kg(self) -> float | None:
+        """The bound where it is one on the mass [kg]."""
+        return self.bound if self.objective == "mass" else None
 
     @property
     def gap(self) -> float | None:
