@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
 
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
+from designer.model.space import named_place
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult
 from designer.statics.inverse import Statics
@@ -52,6 +54,12 @@ class CableThere:
     pull_N: FloatArray
 
 
+def _named_case(case: CaseResult) -> dict[str, Any]:
+    place, lost = case.verification.worst_place, case.loaded.lost_cable
+    names = {"load_case": case.case.name, "cable": case.most_used, "lost_cable": lost}
+    return names | named_place(place)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class GoverningPose:
     """The pose, or the rest after the loss of a cable, and what acts there.
@@ -68,13 +76,17 @@ class GoverningPose:
         What else acts on the platform, world frame (3,) [N].
     """
 
-    case: CaseResult
-    statics: Statics
+    case: CaseResult = field(metadata={"json": _named_case})
+    statics: Statics = field(metadata={"json": lambda at: {"at_m": at.poses.position_m[0]}})
     cables: tuple[CableThere, ...]
-    loads: tuple[tuple[str, FloatArray], ...]
+    loads: tuple[tuple[str, FloatArray], ...] = field(
+        metadata={"json": lambda loads: {"loads": [{"name": n, "force_N": f} for n, f in loads]}}
+    )
+
+    also_in_files: ClassVar = ("force_sum_N", "closure_residual_m", "balance_residual")
 
     @property
-    def left_N(self) -> FloatArray:
+    def force_sum_N(self) -> FloatArray:
         """What all forces on the platform add up to (3,) [N]."""
         pulls = [cable.pull_N for cable in self.cables]
         return np.asarray(np.sum([*pulls, *(force for _, force in self.loads)], axis=0))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.governing import GoverningPose
 from designer.model.space import named_place
 from designer.selection.cases import CaseResult
 from designer.statics.cable_loss import Fate
@@ -23,28 +22,10 @@ def load_cases_dict(analysis: Analysis) -> Json:
             for case in analysis.needs
         ]
         return {"load_cases": needs, "checks": checks, "governing": None}
-    pose = analysis.governing
     return {
         "load_cases": [_case(case) for case in chosen.cases],
         "checks": checks,
-        "governing": None if pose is None else _governing(pose),
-    }
-
-
-def _governing(pose: GoverningPose) -> Json:
-    case = pose.case
-    place = case.verification.worst_place
-    return {
-        "load_case": case.case.name,
-        "cable": case.most_used,
-        "lost_cable": case.loaded.lost_cable,
-        **named_place(place),
-        "at_m": pose.statics.poses.position_m[0],
-        "cables": pose.cables,
-        "loads": [{"name": name, "force_N": force} for name, force in pose.loads],
-        "force_sum_N": pose.left_N,
-        "closure_residual_m": pose.closure_residual_m,
-        "balance_residual": pose.balance_residual,
+        "governing": analysis.governing,
     }
 
 

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from designer.analysis.uncertainty.uncertainty import CONFIDENCE, SizeOdds, UncertaintyAnalysis
+from designer.analysis.uncertainty.uncertainty import UncertaintyAnalysis
+from designer.documents.plain import record
 from designer.model.uncertainty import Input, Normal
 
 Json = dict[str, Any]
@@ -18,37 +19,21 @@ def uncertainty_dict(uncertainty: UncertaintyAnalysis | None) -> Json | None:
     """Return probability, utilisation, sizes and shares; None where no input is uncertain."""
     if uncertainty is None:
         return None
+    odds = record(uncertainty.chosen)
     return {
         "asked": uncertainty.is_asked,
         "requirements": ["breaking_load"],  # of all that the study asks for, these are drawn
-        "probability": uncertainty.chosen.probability,
-        "confidence": _confidence(uncertainty.chosen),
-        "not_held": uncertainty.chosen.not_held,
+        **{name: odds[name] for name in ("probability", "confidence", "not_held")},
         "utilisation": _utilisation(uncertainty),
         "inputs": [_input(uncertainty, name) for name in uncertainty.spreads],
         "shares": uncertainty.shares,
         "shares_reason": uncertainty.why_no_shares or None,
-        "sizes": [_size(size) for size in uncertainty.sizes],
+        "sizes": uncertainty.sizes,
         "samples": uncertainty.samples,
         "share_points": uncertainty.points,
         "seed": uncertainty.seed,
         "poses": uncertainty.poses,
         "searched": uncertainty.checked,
-    }
-
-
-def _confidence(size: SizeOdds) -> Json:
-    low, high = size.probability_95
-    return {"level": CONFIDENCE, "low": low, "high": high}
-
-
-def _size(size: SizeOdds) -> Json:
-    return {
-        "grade": size.candidate.grade.id,
-        "size_id": size.candidate.size.id,
-        "probability": size.probability,
-        "confidence": _confidence(size),
-        "not_held": size.not_held,
     }
 
 

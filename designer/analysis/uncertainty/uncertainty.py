@@ -8,7 +8,8 @@ other is quasi-random, by which the shares come out more precise from as many dr
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -54,8 +55,10 @@ class SizeOdds:
         Largest over allowable tension in each draw; infinite where a pose is not held.
     """
 
-    candidate: Candidate
-    utilisation: FloatArray
+    candidate: Candidate = field(metadata={"json": lambda rope: rope.ids})
+    utilisation: FloatArray = field(metadata={"json": None})
+
+    also_in_files: ClassVar = ("probability", "confidence", "not_held")
 
     @property
     def enough(self) -> int:
@@ -76,6 +79,12 @@ class SizeOdds:
     def probability_95(self) -> tuple[float, float]:
         """Between which the probability lies with 95 % confidence."""
         return exact_interval(self.enough, len(self.utilisation))
+
+    @property
+    def confidence(self) -> dict[str, float]:
+        """The same as files of results name it."""
+        low, high = self.probability_95
+        return {"level": CONFIDENCE, "low": low, "high": high}
 
 
 @dataclass(frozen=True, slots=True, eq=False)

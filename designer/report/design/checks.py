@@ -44,7 +44,7 @@ def _forces(pose: GoverningPose) -> list[tuple[str, list[str]]]:
     named = [(f"cable {one.cable}", one.pull_N) for one in pose.cables]
     write = _alike(float(x) for _, force in (*named, *pose.loads) for x in force)
     rows = [(fmt.capital(name), [*write(*force)]) for name, force in (*named, *pose.loads)]
-    return [*rows, ("Sum", [*write(*(pose.left_N.round(6) + 0.0))])]
+    return [*rows, ("Sum", [*write(*(pose.force_sum_N.round(6) + 0.0))])]
 
 
 def by_title(requirements: Iterable[Requirement]) -> list[list[Requirement]]:
