@@ -8,7 +8,7 @@ other is quasi-random, by which the shares come out more precise from as many dr
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
@@ -118,16 +118,16 @@ class UncertaintyAnalysis:
     """
 
     spreads: Mapping[Input, Spread]
-    is_asked: bool
-    is_modulus_of_grade: bool
     chosen: SizeOdds
     sizes: tuple[SizeOdds, ...]
     shares: tuple[Share, ...]
-    why_no_shares: str
-    points: int
     seed: int
     poses: int
-    checked: Checked
+    is_asked: bool = False
+    is_modulus_of_grade: bool = True
+    why_no_shares: str = ""
+    points: int = 0
+    checked: Checked = field(default_factory=Checked)
 
     @property
     def samples(self) -> int:
@@ -172,14 +172,15 @@ def uncertainty_of(
     sampling = _Sampling(study.selection, built, chosen, spreads, uncertainty.seed)
     poses = sampling.poses_of(chosen)
     if study.uncertainty is not None:
-        return sampling.full(
-            selection, poses, uncertainty.samples, uncertainty.modulus is None, reporter
+        full = sampling.full(selection, poses, uncertainty.samples, reporter)
+        return replace(
+            full, is_modulus_of_grade="modulus" in spreads and uncertainty.modulus is None
         )
     if any(pose.loaded.keeps_lengths for pose in poses):
         return None
     samples = _ALONE if all(pose.is_one_pass for pose in poses) else _ALONE_SLOWLY
     odds = SizeOdds(chosen, largest(poses, sampling.drawn(samples)))
-    return sampling.result(odds, poses, is_asked=False, is_modulus_of_grade=True)
+    return sampling.result(odds, poses)
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,7 +234,6 @@ class _Sampling:
         selection: SelectionResult,
         poses: list[GoverningCandidates],
         samples: int,
-        is_modulus_of_grade: bool,
         reporter: Reporter,
     ) -> UncertaintyAnalysis:
         """Try the sizes beside the chosen one as well, search the poses, share out the spread."""
@@ -253,10 +253,11 @@ class _Sampling:
                 for size in around
             )
             shares, why = self._shares(poses, points, advance)
-        return self.result(
-            odds, poses, is_asked=True, is_modulus_of_grade=is_modulus_of_grade,
-            sizes=sizes, shares=shares, why=why, points=points, checked=checked,
+        result = replace(
+            self.result(odds, poses), is_asked=True, sizes=sizes, why_no_shares=why,
+            points=points, checked=checked,
         )  # fmt: skip
+        return result if shares is None else replace(result, shares=shares)
 
     def _shares(
         self, poses: list[GoverningCandidates], points: int, advance: Advance
@@ -274,23 +275,14 @@ class _Sampling:
             return (), str(error)
         return tuple(sorted(shares_found, key=lambda share: -share.first_order)), ""
 
-    def result(
-        self,
-        odds: SizeOdds,
-        poses: list[GoverningCandidates],
-        *,
-        is_asked: bool,
-        is_modulus_of_grade: bool,
-        sizes: tuple[SizeOdds, ...] = (),
-        shares: tuple[Share, ...] | None = None,
-        why: str = "",
-        points: int = 0,
-        checked: Checked | None = None,
-    ) -> UncertaintyAnalysis:
-        """Return the result; of one input, all of the spread is its own."""
+    def result(self, odds: SizeOdds, poses: list[GoverningCandidates]) -> UncertaintyAnalysis:
+        """Return the result of the chosen size alone; a single input has all of the spread."""
         all_of_it = tuple(Share(name, 1.0, (1.0, 1.0), 1.0, (1.0, 1.0)) for name in self.spreads)
         return UncertaintyAnalysis(
-            self.spreads, is_asked, is_modulus_of_grade and "modulus" in self.spreads, odds,
-            sizes or (odds,), all_of_it if shares is None else shares, why, points, self.seed,
-            sum(len(pose.places) for pose in poses), checked or Checked(),
-        )  # fmt: skip
+            spreads=self.spreads,
+            chosen=odds,
+            sizes=(odds,),
+            shares=all_of_it,
+            seed=self.seed,
+            poses=sum(len(pose.places) for pose in poses),
+        )
