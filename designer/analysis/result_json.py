@@ -38,7 +38,7 @@ def result_dict(analysis: Analysis, is_read: IsRead = _everything) -> Json:
 
     What changes no answer and takes its time is computed where ``is_read``, and empty elsewhere.
     """
-    study = analysis.study
+    study, selection = analysis.study, analysis.selection
     carries = any(map(is_read, _OF_CARRIES))
     return plain(
         {
@@ -47,9 +47,9 @@ def result_dict(analysis: Analysis, is_read: IsRead = _everything) -> Json:
             "positive": analysis.is_positive,
             "answer": _answer(analysis),
             "inputs": {entry.field: entry.value_SI for entry in study.source.entries},
-            "pose": _pose(analysis, is_read),
+            "pose": _pose(study, analysis.pose, is_read),
             "workspace": _workspace(analysis, is_read),
-            "selection": selection_dict(analysis.selection, analysis.groups),
+            "selection": selection_dict(selection, analysis.groups),
             **load_cases_dict(analysis),
             **carries_dict(
                 analysis.carries if carries else None, analysis.group_slopes if carries else ()
@@ -58,7 +58,7 @@ def result_dict(analysis: Analysis, is_read: IsRead = _everything) -> Json:
                 analysis.uncertainty if is_read("uncertainty") else None
             ),
             "findings": analysis.findings if is_read("findings") else None,
-            "proof": _proof(analysis),
+            "proof": (selection and selection.proof) or Proof("off"),
             "verification": analysis.verification if is_read("verification") else [],
             "provenance": {
                 **_origin(study),
@@ -84,7 +84,7 @@ def result_part(analysis: Analysis, keep: Iterable[str]) -> Json:
         return result_dict(analysis, is_read)
     part: Json = {"format": RESULT_FORMAT, "name": analysis.study.name}
     if is_read("pose"):
-        part["pose"] = _pose(analysis, is_read)
+        part["pose"] = _pose(analysis.study, analysis.pose, is_read)
     if is_read("workspace"):
         part["workspace"] = _workspace(analysis, is_read)
     return plain(part)
@@ -109,7 +109,7 @@ def size_dict(study: Study, pose: PoseAnalysis, keep: Iterable[str] | None = Non
     Of ``keep``, the paths that will be read, as of `result_part`; all if left out.
     """
     is_read = _everything if keep is None else _reader(keep)
-    pose_alone = {"pose": _pose_dict(study, pose, is_read), "provenance": _origin(study)}
+    pose_alone = {"pose": _pose(study, pose, is_read), "provenance": _origin(study)}
     return plain({"format": RESULT_FORMAT, "name": study.name, **pose_alone})
 
 
@@ -136,11 +136,9 @@ def _products(analysis: Analysis) -> Json:
     return {"products": products, "total_mass_kg": assignment.total_mass_kg}
 
 
-def _pose(analysis: Analysis, is_read: IsRead) -> Json | None:
-    return None if analysis.pose is None else _pose_dict(analysis.study, analysis.pose, is_read)
-
-
-def _pose_dict(study: Study, pose: PoseAnalysis, is_read: IsRead) -> Json:
+def _pose(study: Study, pose: PoseAnalysis | None, is_read: IsRead) -> Json | None:
+    if pose is None:
+        return None
     statics, sizing = pose.sizing.statics, pose.sizing
     diameter, is_solved = sizing.diameter_m, bool(statics.is_solved)
     how_surely = "proved" if sizing.is_thinnest else "found"  # that no thinner cable holds it
@@ -225,10 +223,3 @@ def _interference(survey: Interference) -> Json:
         "violating": survey.violating,
         "violated": survey.is_violated,
     }
-
-
-def _proof(analysis: Analysis) -> Json:
-    """Return what is proved of the chosen rope; off where nothing was to be."""
-    case = None if analysis.selection is None else analysis.selection.proof
-    proof = Proof("off") if case is None else case.proof
-    return {**record(proof), "load_case": None if case is None else case.load_case or None}

@@ -59,7 +59,7 @@ def candidate_dict(candidate: Candidate, outcome: GradeOutcome) -> Json:
     return {
         **candidate.ids,
         "diameter_m": size.diameter_m,
-        "continuous_diameter_m": candidate.continuous_diameter_m,
+        "continuous_diameter_m": outcome.continuous_diameter_m,
         "max_tension_N": verification.max_tension_N,
         "utilisation": verification.utilisation,
         "minimum_breaking_load_N": size.minimum_breaking_load_N,

@@ -15,10 +15,10 @@ from designer.explore.question import Question, Rope, RopePerCable
 from designer.grades.grade import Grade, Size
 from designer.model.requirement import Answer, Requirement, State
 from designer.progress import SILENT, Reporter
+from designer.proof.prove import Proof
 from designer.selection.candidate import Candidate
 from designer.selection.compare import burdens, failure_words, is_undominated
 from designer.selection.groups.result import GroupChoice
-from designer.selection.proven import CaseProof
 from designer.selection.result import SelectionResult
 from designer.selection.select import at_samples
 from designer.selection.verify import Verification
@@ -137,7 +137,7 @@ class Ropes:
         ``candidates.csv`` as the report has it; empty unless final.
     problems : tuple of str
         What plugins and grade files gave that could not be used, one line each.
-    proof : CaseProof or None
+    proof : Proof or None
         What is proved of the best, as in the report; None until the full selection, or for groups.
     requirements : tuple of Requirement
         All that the study asks for, as in the report; none until the full selection.
@@ -154,7 +154,7 @@ class Ropes:
     groups: Groups | None = None
     csv: str = ""
     problems: tuple[str, ...] = ()
-    proof: CaseProof | None = None
+    proof: Proof | None = None
     requirements: tuple[Requirement, ...] = ()
     answer: Answer | None = None
 

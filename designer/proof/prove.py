@@ -67,6 +67,8 @@ class Proof:
         How long it took [s].
     reason : str
         Why nothing was tried.
+    load_case : str
+        In which load case, with its direction; empty where the study has none.
     """
 
     status: Status
@@ -77,6 +79,9 @@ class Proof:
     boxes: int = 0
     seconds: float = field(default=0.0, metadata={"json": None})
     reason: str = field(default="", metadata={"json": lambda reason: {"reason": reason or None}})
+    load_case: str = field(
+        default="", metadata={"json": lambda load_case: {"load_case": load_case or None}}
+    )
 
 
 def prove(

@@ -41,8 +41,6 @@ class Candidate:
         Its figures as the solver takes them, efficiency and safety factor applied.
     efficiency : float
         Share of the breaking load that end fittings and bending leave.
-    continuous_diameter_m : float
-        Optimum in the grade's continuous family [m]; NaN where the family has none.
     verification : Verification
         What it meets in the load case that governs.
     cases : tuple of CaseResult
@@ -64,7 +62,6 @@ class Candidate:
     size: Size
     cable: Cable
     efficiency: float = 1.0
-    continuous_diameter_m: float = math.nan
     verification: Verification = NOT_TRIED
     cases: tuple[CaseResult, ...] = ()
     figures: CandidateFigures = UNKNOWN

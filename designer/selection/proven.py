@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -16,32 +16,16 @@ from designer.workspace.demand import rope_demand
 from designer.workspace.refine import LIGHT, refine_over_branches
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CaseProof:
-    """What is proved of a candidate.
-
-    Parameters
-    ----------
-    proof : Proof
-        The proof.
-    load_case : str
-        In which load case, with its direction; empty where the study has none.
-    """
-
-    proof: Proof
-    load_case: str
-
-
 def prove_governing(
     cases: Sequence[CaseResult], budget: Budget, progress: Advance
-) -> tuple[CaseProof, tuple[CaseResult, ...]]:
+) -> tuple[Proof, tuple[CaseResult, ...]]:
     """Prove that a cable holds in all poses, in the case and direction that ask for most.
 
     A pose that is worse than the one found before takes its place, after a search from there.
 
     Returns
     -------
-    proof : CaseProof
+    proof : Proof
         What is proved.
     cases : tuple of CaseResult
         The cases, with that pose.
@@ -52,7 +36,8 @@ def prove_governing(
     name = "" if loaded.case is STATIC else ", ".join(filter(None, words))
     reason = _why_not(worst)
     if reason:
-        return CaseProof(Proof("off", found=worst.utilisation, reason=reason), name), tuple(cases)
+        proof = Proof("off", found=worst.utilisation, reason=reason, load_case=name)
+        return proof, tuple(cases)
     percent = 0
 
     def advance_to(share: float) -> None:
@@ -62,8 +47,9 @@ def prove_governing(
 
     space, cable = workspace.space, loaded.cable
     proof = prove(loaded.robot, cable, space, worst.utilisation, budget, progress=advance_to)
+    proof = replace(proof, load_case=name)
     if proof.worst is None:
-        return CaseProof(proof, name), tuple(cases)
+        return proof, tuple(cases)
     place, utilisation = proof.worst[: space.n_coordinates], proof.found
     if np.isfinite(utilisation):
         demand = partial(rope_demand, loaded.robot, cable, workspace.hangs_below)
@@ -78,7 +64,7 @@ def prove_governing(
     )
     worse = replace(worst, verification=verification)
     proof = replace(proof, found=utilisation, bound=max(proof.bound, utilisation))
-    return CaseProof(proof, name), tuple(worse if case is worst else case for case in cases)
+    return proof, tuple(worse if case is worst else case for case in cases)
 
 
 def _why_not(result: CaseResult) -> str:

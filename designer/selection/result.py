@@ -9,8 +9,8 @@ from designer.grades.grade import Grade, Size
 from designer.model.cable import Material
 from designer.model.load_case import STATIC
 from designer.model.verdict import Verdict
+from designer.proof.prove import Proof
 from designer.selection.candidate import Candidate
-from designer.selection.proven import CaseProof
 from designer.selection.usable import Usable
 from designer.study import Objective
 
@@ -117,7 +117,7 @@ class SelectionResult:
         Of the costs; None where nothing has a price.
     not_tried : tuple of NotTried
         What was not solved, and why.
-    proof : CaseProof or None
+    proof : Proof or None
         What is proved of the chosen product, in the load case that governs; None where nothing was
         to be.
     usable : Usable or None
@@ -133,7 +133,7 @@ class SelectionResult:
     currency: str | None = None
     not_tried: tuple[NotTried, ...] = ()
     usable: Usable | None = None
-    proof: CaseProof | None = None
+    proof: Proof | None = None
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:

@@ -19,7 +19,7 @@ from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Robot
 from designer.model.workspace import Workspace
 from designer.progress import SILENT, Reporter
-from designer.proof.prove import Budget
+from designer.proof.prove import Budget, Proof
 from designer.selection.candidate import (
     Candidate,
     candidates_of,
@@ -43,7 +43,7 @@ from designer.selection.continuous import ContinuousOptimum, continuous_optima
 from designer.selection.criteria import criteria_of
 from designer.selection.efficiency import Allowance
 from designer.selection.objectives import MEANINGS, CandidateFigures
-from designer.selection.proven import CaseProof, prove_governing
+from designer.selection.proven import prove_governing
 from designer.selection.requirements import sheave_ratio_of
 from designer.selection.result import GradeOutcome, NotTried, Outcome, SelectionResult
 from designer.selection.screen import Screen
@@ -149,7 +149,7 @@ class _SelectionRun:
     allowed: Sequence[Grade]  # By the study
     reporter: Reporter = SILENT
     proof_s: float = 0.0
-    proofs: dict[int, CaseProof] = field(default_factory=dict)
+    proofs: dict[int, Proof] = field(default_factory=dict)
 
     @cached_property
     def currency(self) -> str | None:
@@ -259,7 +259,7 @@ class _SelectionRun:
         candidate.verification = together(candidate.cases)
         tension_N = candidate.verification.max_tension_N
         candidate.figures = replace(candidate.figures, max_tension_N=tension_N)
-        return proof.proof.worst is not None
+        return proof.worst is not None
 
     def searched(self, candidates: Sequence[Candidate], thorough: set[int]) -> list[Verification]:
         """Search for the extremes of candidates between the samples.
@@ -332,7 +332,6 @@ class _SelectionRun:
             standing, reason = standing_of(candidate, front, self.selection.objectives)
             candidate.standing, candidate.reason = standing, reason
             candidate.requirements = self.screen.requirements(candidate)
-            candidate.continuous_diameter_m = optimum.diameter_m
             candidate.cases = worst_of_each(candidate.cases)
         return GradeOutcome(
             grade=grade,

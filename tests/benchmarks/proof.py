@@ -42,7 +42,7 @@ def _print(name: str, study: designer.Study, seconds: float) -> None:
     if found.chosen is None or found.proof is None:
         print(f"{name:14}no rope chosen")
         return
-    proof = found.proof.proof
+    proof = found.proof
     gap = 100.0 * (proof.bound / proof.found - 1.0)
     print(
         f"{name:14}{found.chosen.size.id:12}{proof.found:<11.6f}{proof.bound:<11.6f}{gap:<10.4f}"

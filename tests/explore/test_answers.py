@@ -171,7 +171,7 @@ def test_the_best_rope_is_proved_as_in_the_report(yard: Session) -> None:
     assert full.proof is not None
     assert analysis.selection is not None
     assert analysis.selection.proof is not None
-    ours, theirs = full.proof.proof, analysis.selection.proof.proof
+    ours, theirs = full.proof, analysis.selection.proof
     assert ours.status == theirs.status == "proved"
     assert ours.found == theirs.found <= ours.bound <= 1.0
     assert ours.bound == pytest.approx(theirs.bound, rel=WITHIN)  # batches depend on the machine

@@ -16,7 +16,6 @@ from designer.proof.prove import Proof
 from designer.report.design.proof import proof_statement
 from designer.resources import example_file
 from designer.selection.cases import CaseResult
-from designer.selection.proven import CaseProof
 from designer.selection.select import select
 from designer.study import Study
 
@@ -69,8 +68,8 @@ def test_a_worst_pose_that_the_samples_missed_is_caught(monkeypatch: pytest.Monk
     ours, theirs = caught.chosen.verification, honest.chosen.verification
     assert ours.utilisation == pytest.approx(theirs.utilisation, rel=1e-3)
     assert caught.proof is not None
-    assert caught.proof.proof.status == "proved"
-    assert ours.utilisation <= caught.proof.proof.bound <= 1.0015 * theirs.utilisation
+    assert caught.proof.status == "proved"
+    assert ours.utilisation <= caught.proof.bound <= 1.0015 * theirs.utilisation
 
 
 @pytest.mark.slow
@@ -87,9 +86,9 @@ def test_the_proof_is_in_the_result() -> None:
 
 
 def test_what_is_shown_is_not_more_than_is_proved() -> None:
-    proved = CaseProof(Proof("proved", bound=0.88511, found=0.8842, fraction=1.0), "")
+    proved = Proof("proved", bound=0.88511, found=0.8842, fraction=1.0)
     assert proof_statement(proved).title.endswith("at most 88.6\u00a0%")
-    partial = CaseProof(Proof("partial", found=0.9, fraction=0.99997), "")
+    partial = Proof("partial", found=0.9, fraction=0.99997)
     assert proof_statement(partial).title == "Found, not proved: 99.9\u00a0% of the volume"
 
 

@@ -118,7 +118,7 @@ def test_the_tension_is_that_between_the_samples() -> None:
         governing.verification.max_tension_N, rel=1e-9
     )
     assert found.proof is not None
-    assert found.proof.proof.found == pytest.approx(governing.utilisation, rel=1e-9)
+    assert found.proof.found == pytest.approx(governing.utilisation, rel=1e-9)
 
 
 @pytest.mark.parametrize("exponent", [0.3, 0.9, -0.9])
