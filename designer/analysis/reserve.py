@@ -135,7 +135,7 @@ def _end(
         highest = max(poses, key=lambda pose: used_at(pose, value))
         candidates = [
             carried(case, *_searched(case, change, value, [o for o in poses if o.case is case]))
-            for case in {id(o.case): o.case for o in poses if used_at(o, value) > _NEAR}.values()
+            for case in dict.fromkeys(o.case for o in poses if used_at(o, value) > _NEAR)
         ]
         beyond_full = [pose for pose in candidates if used_at(pose, value) > 1.0 + _FULL]
         if not beyond_full:

@@ -30,7 +30,7 @@ def selection_dict(selection: SelectionResult | None, choice: GroupChoice | None
     if selection is None:
         return None
     rows = {
-        id(c): candidate_dict(c, o)
+        c: candidate_dict(c, o)
         for o in (*selection.outcomes, *selection.alternatives)
         for c in o.candidates
     }
@@ -38,13 +38,13 @@ def selection_dict(selection: SelectionResult | None, choice: GroupChoice | None
     return {
         "objectives": selection.objectives,
         "currency": selection.currency,
-        "chosen": None if chosen is None else rows[id(chosen)],
+        "chosen": None if chosen is None else rows[chosen],
         "reason": selection.reason,
-        "pareto": [rows[id(c)] for c in selection.front],
-        "candidates": [rows[id(c)] for c in selection.candidates],
+        "pareto": [rows[c] for c in selection.front],
+        "candidates": [rows[c] for c in selection.candidates],
         "not_tried": selection.not_tried,
         "grades": selection.outcomes,
-        "alternatives": [rows[id(o.best)] for o in selection.alternatives if o.best],
+        "alternatives": [rows[o.best] for o in selection.alternatives if o.best],
         "usable": [record(size) | {"grade": usable.grade.id} for size in usable.sizes]
         if usable
         else [],

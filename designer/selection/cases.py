@@ -268,8 +268,8 @@ def governing(results: Sequence[CaseResult]) -> CaseResult:
 
 def worst_of_each(results: Sequence[CaseResult]) -> tuple[CaseResult, ...]:
     """Return of each case the direction that asks for most, in the order of the study."""
-    cases = {id(result.case): result.case for result in results}
-    return tuple(governing([r for r in results if r.case is case]) for case in cases.values())
+    cases = dict.fromkeys(result.case for result in results)
+    return tuple(governing([r for r in results if r.case is case]) for case in cases)
 
 
 def together(results: Sequence[CaseResult]) -> Verification:
@@ -286,7 +286,7 @@ def searched(
 
     All of them in one batch.
     """
-    whole = [_with(c, {id(r): r.whole() for r in _close(worst_of_each(c))}) for c in candidates]
+    whole = [_with(c, {r: r.whole() for r in _close(worst_of_each(c))}) for c in candidates]
     close = [(worst_of_each(results), governing(results)) for results in whole]
     replaced = _search([(r, r is not worst) for each, worst in close for r in _close(each)])
     return [_with(results, replaced) for results in whole]
@@ -306,24 +306,26 @@ def searched_all(results: Sequence[CaseResult]) -> tuple[CaseResult, ...]:
     of the first directions on; that there is none larger is not proved.
     """
     results = tuple(result.whole() for result in results)
-    replaced: dict[int, CaseResult] = {}
+    replaced: dict[CaseResult, CaseResult] = {}
     for worst in worst_of_each(results):
         close = _close([result for result in results if result.case is worst.case])
         replaced |= _search([(result, result is not worst) for result in close])
     return tuple(_turned(result) for result in _with(results, replaced))
 
 
-def _with(results: Sequence[CaseResult], replaced: dict[int, CaseResult]) -> tuple[CaseResult, ...]:
-    return tuple(replaced.get(id(result), result) for result in results)
+def _with(
+    results: Sequence[CaseResult], replaced: dict[CaseResult, CaseResult]
+) -> tuple[CaseResult, ...]:
+    return tuple(replaced.get(result, result) for result in results)
 
 
-def _search(results: Sequence[tuple[CaseResult, bool]]) -> dict[int, CaseResult]:
-    """Search some results, each lightly or not; what they become, by their `id`."""
-    replaced: dict[int, CaseResult] = {}
+def _search(results: Sequence[tuple[CaseResult, bool]]) -> dict[CaseResult, CaseResult]:
+    """Search some results, each lightly or not; what each becomes."""
+    replaced: dict[CaseResult, CaseResult] = {}
     for is_light in (False, True):
         of_effort = [result for result, light in results if light is is_light]
         search = partial(_search_once, is_light=is_light)
-        replaced |= zip(map(id, of_effort), _at_their_tension(of_effort, search), strict=True)
+        replaced |= zip(of_effort, _at_their_tension(of_effort, search), strict=True)
     return replaced
 
 
@@ -350,9 +352,9 @@ def _search_once(results: Sequence[CaseResult], *, is_light: bool) -> list[CaseR
 def _load_of(loaded: Loaded) -> Hashable:
     """Return what is the same for cables that meet the same load on the same robot."""
     if loaded.case.changes_robot:
-        return id(loaded)
+        return loaded
     directions = (None if d is None else d.tobytes() for d in (loaded.wind, loaded.inertia))
-    return id(loaded.case), *directions
+    return loaded.case, *directions
 
 
 def _search_settled(result: CaseResult) -> CaseResult:

@@ -78,7 +78,7 @@ class Evaluation:
 
 def loads_of(cases: Sequence[CaseResult]) -> list[CaseLoads]:
     """Return the load cases of what a cable meets, each in all directions that were tried."""
-    of_cases = {id(result.case): result for result in cases}.values()
+    of_cases = {result.case: result for result in cases}.values()
     return [
         CaseLoads(
             result.workspace,

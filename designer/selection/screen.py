@@ -31,7 +31,7 @@ class Screen:
     criteria: Sequence[Criterion]
     selection: Selection
     reporter: Reporter
-    _evaluations: dict[int, tuple[Evaluation, ...]] = field(default_factory=dict)
+    _evaluations: dict[Candidate, tuple[Evaluation, ...]] = field(default_factory=dict)
 
     def rejects_any(
         self, best: Candidate, front: Sequence[Candidate], meeting: Sequence[Candidate]
@@ -43,7 +43,7 @@ class Screen:
         """
         requirements = self.evaluated(best)
         best.rejected_by = next((r for r in requirements if not r.holds), None)
-        evaluations = self._evaluations[id(best.size)]
+        evaluations = self._evaluations[best]
         failing = [e for e in evaluations if e.requirement.state is State.FAILS]
         evaluated_at = meeting if best.rejected_by is not None else front
         for candidate in evaluated_at:
@@ -70,12 +70,12 @@ class Screen:
 
     def evaluated(self, candidate: Candidate) -> tuple[Requirement, ...]:
         """Return what a candidate comes to beside strength and sheave, evaluated in full once."""
-        if id(candidate.size) not in self._evaluations:
+        if candidate not in self._evaluations:
             loads = loads_of(candidate.cases)
             with self.reporter.task("requirements", len(loads)) as advance:
-                self._evaluations[id(candidate.size)] = evaluate(loads, self.criteria, advance)
+                self._evaluations[candidate] = evaluate(loads, self.criteria, advance)
         lengths = candidate.verification.longest_m, candidate.verification.shortest_m
-        evaluations = self._evaluations[id(candidate.size)]
+        evaluations = self._evaluations[candidate]
         return (
             *(evaluation.requirement for evaluation in evaluations),
             *drum_of(*lengths, self.selection),
@@ -83,7 +83,7 @@ class Screen:
 
     def requirements(self, candidate: Candidate) -> tuple[Requirement, ...]:
         """Return all that the study asks of a candidate; nothing where it was not evaluated."""
-        if id(candidate.size) not in self._evaluations:
+        if candidate not in self._evaluations:
             return ()
         return (
             *strength_of(candidate.cases, self.selection),

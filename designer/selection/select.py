@@ -97,7 +97,7 @@ def select(
         currency=run.currency,
         not_tried=tuple(not_tried),
         usable=_usable(robot, workspace, outcomes, chosen),
-        proof=None if chosen is None else run.proofs.get(id(chosen.size)),
+        proof=None if chosen is None else run.proofs.get(chosen),
     )
 
 
@@ -149,7 +149,7 @@ class _SelectionRun:
     allowed: Sequence[Grade]  # By the study
     reporter: Reporter = SILENT
     proof_s: float = 0.0
-    proofs: dict[int, Proof] = field(default_factory=dict)
+    proofs: dict[Candidate, Proof] = field(default_factory=dict)
 
     @cached_property
     def currency(self) -> str | None:
@@ -177,7 +177,7 @@ class _SelectionRun:
         tried: list[tuple[Grade, list[Candidate], Candidate | None]] = []
         for grade in grades:
             of_grade = [c for c in candidates if c.grade is grade]
-            fitting = [c for c in of_grade if id(c) in allowed]
+            fitting = [c for c in of_grade if c in allowed]
             its_best = best_of(fitting, self.selection.objectives)
             if its_best is not None or (of_grade and not only_fitting):
                 tried.append((grade, of_grade, its_best))
@@ -210,15 +210,15 @@ class _SelectionRun:
         of_grades = [grade for grade, _ in grades]
         return continuous_optima(workspace, of_grades, allowance, self.built, doubtful)
 
-    def choose(self, candidates: Sequence[Candidate]) -> tuple[list[Candidate], set[int]]:
-        """Return the Pareto set, the best first, and by `id` what it was chosen from.
+    def choose(self, candidates: Sequence[Candidate]) -> tuple[list[Candidate], set[Candidate]]:
+        """Return the Pareto set, the best first, and what it was chosen from.
 
         The best is searched in every load case, proved as far as that goes, and meets every
         requirement. Where no candidate meets all, it is the best of those that are strong enough.
         """
         objectives = self.selection.objectives
         with self.reporter.task("search", len(candidates)) as advance:
-            thorough: set[int] = set()
+            thorough: set[Candidate] = set()
 
             def search(candidates: Sequence[Candidate]) -> list[Verification]:
                 verifications = self.searched(candidates, thorough)
@@ -233,8 +233,8 @@ class _SelectionRun:
                 if not front:
                     break
                 best = front[0]
-                if id(best) not in thorough and len(best.cases) > 1:
-                    thorough.add(id(best))
+                if best not in thorough and len(best.cases) > 1:
+                    thorough.add(best)
                     best.verification = replace(best.verification, is_refined=False)
                 elif meets_all and self.screen.rejects_any(best, front, meeting):
                     continue
@@ -242,11 +242,11 @@ class _SelectionRun:
                     self.screen.evaluated(best)
                     front = front if meets_all else [best]
                     break
-        return front, {id(c) for c in allowed}
+        return front, set(allowed)
 
     def _proves(self, candidate: Candidate) -> bool:
         """Prove that a candidate holds in all poses; tell whether a worse pose was found."""
-        if self.proof_s == 0.0 or id(candidate.size) in self.proofs:
+        if self.proof_s == 0.0 or candidate in self.proofs:
             return False
         with self.reporter.task("proof", 100) as advance:
             proof, cases = prove_governing(candidate.cases, Budget(self.proof_s), advance)
@@ -254,22 +254,24 @@ class _SelectionRun:
             while (settled := tuple(map(resettled, cases))) != cases:
                 proof, cases = prove_governing(settled, Budget(self.proof_s), lambda _: None)
             candidate.cases = cases
-        self.proofs[id(candidate.size)] = proof
+        self.proofs[candidate] = proof
         candidate.cable = as_stiff_as(candidate.cable, governing(candidate.cases))
         candidate.verification = together(candidate.cases)
         tension_N = candidate.verification.max_tension_N
         candidate.figures = replace(candidate.figures, max_tension_N=tension_N)
         return proof.worst is not None
 
-    def searched(self, candidates: Sequence[Candidate], thorough: set[int]) -> list[Verification]:
+    def searched(
+        self, candidates: Sequence[Candidate], thorough: set[Candidate]
+    ) -> list[Verification]:
         """Search for the extremes of candidates between the samples.
 
-        Where each governs and near there; of those with an `id` in ``thorough`` in every load case.
+        Where each governs and near there; of those in ``thorough`` in every load case.
         """
-        in_batch = [c for c in candidates if id(c) not in thorough]
-        cases = dict(zip(map(id, in_batch), searched([c.cases for c in in_batch]), strict=True))
+        in_batch = [c for c in candidates if c not in thorough]
+        cases = dict(zip(in_batch, searched([c.cases for c in in_batch]), strict=True))
         for candidate in candidates:
-            candidate.cases = cases.get(id(candidate)) or searched_all(candidate.cases)
+            candidate.cases = cases.get(candidate) or searched_all(candidate.cases)
             candidate.cable = as_stiff_as(candidate.cable, governing(candidate.cases))
             if "stiffness" in self.selection.objectives:
                 self._add_stiffness(candidate, searched=True)

@@ -61,10 +61,10 @@ def clearance(source: Source) -> Context | None:
 
 def proof(source: Source) -> Context | None:
     """What was proved of the chosen rope, and how; None where nothing was to be."""
-    case = chosen_proof(source.analysis)
-    if case is None or case.proof.status == "off":
+    chosen = chosen_proof(source.analysis)
+    if chosen is None or chosen.status == "off":
         return None
-    return {"proved": proof_statement(case), "boxes": case.proof.boxes}
+    return {"proved": proof_statement(chosen), "boxes": chosen.boxes}
 
 
 def verification(source: Source) -> Context | None:
