@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from designer.explore.fields import Field
 from designer.explore.here import Here
 from designer.explore.map import WorstAnswer
 from designer.explore.question import Question, Rope, RopePerCable
-from designer.explore.ropes import Ropes
+from designer.explore.ropes import RopeRow, Ropes
+from designer.report import format as fmt
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,30 +24,34 @@ class Pin:
     worst: WorstAnswer | None = None
     ropes: Ropes | None = None
 
-
-@dataclass(frozen=True, slots=True)
-class FigureDifference:
-    """A figure in both states [SI], NaN where there is none."""
-
-    title: str
-    unit: str
-    scale: float  # From SI to the unit
-    before: float
-    after: float
-
     @property
-    def difference(self) -> float:
-        """What it has become less what it was [SI]."""
-        return self.after - self.before
+    def best(self) -> RopeRow | None:
+        """The best rope."""
+        return None if self.ropes is None else self.ropes.row(self.ropes.best)
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What reads otherwise in the two states; empty for what is not there."""
+    """What reads otherwise in the two states, empty for what is not there.
+
+    ``difference`` is what the figure has become less what it was, in its unit, NaN where it is not
+    known; None of all that is no figure.
+    """
 
     title: str
     before: str
     after: str
+    difference: float | None = None
+    unit: str = ""
+
+    @property
+    def difference_text(self) -> str:
+        """The difference with its sign."""
+        if self.difference is None or math.isnan(self.difference):
+            return "" if self.difference is None else fmt.MISSING
+        text = fmt.number(self.difference, 3)
+        has_sign = text.startswith("−") or self.difference == 0.0
+        return f"{'' if has_sign else '+'}{text} {self.unit}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,10 +62,8 @@ class Differences:
     ----------
     changes : tuple of Change
         Values of the study, the rope that is looked at, the verdict, the best rope.
-    lines : tuple of FigureDifference
-        Figures of the answer.
-    utilisation : mapping of Rope to FigureDifference
-        Of every rope in both states.
+    figures : tuple of Change
+        Figures of the answer, those that are the same among them.
     gained, lost : tuple of Rope
         Ropes that hold now and did not, and the other way round.
     is_like_with_like : bool
@@ -68,36 +72,58 @@ class Differences:
     """
 
     changes: tuple[Change, ...]
-    lines: tuple[FigureDifference, ...]
-    utilisation: dict[Rope, FigureDifference]
+    figures: tuple[Change, ...]
     gained: tuple[Rope, ...]
     lost: tuple[Rope, ...]
     is_like_with_like: bool
 
 
+def _needed_at_worst_m(pin: Pin) -> float | None:
+    sizing = None if pin.worst is None else pin.worst.workspace.sagging
+    return None if sizing is None else sizing.diameter_m
+
+
+def _used_at_worst(pin: Pin) -> float | None:
+    rope = None if pin.worst is None else pin.worst.rope
+    return None if rope is None else rope.utilisation
+
+
+_FIGURES: tuple[tuple[str, str, float, Callable[[Pin], float | None]], ...] = (
+    ("Diameter needed here", "mm", 1e3, lambda p: p.here.diameter_m if p.here else None),
+    ("Largest tension here", "kN", 1e-3, lambda p: p.here.max_tension_N if p.here else None),
+    ("Utilisation here", "%", 100.0, lambda p: p.here.utilisation if p.here else None),
+    ("Stiffness here", "kN/m", 1e-3, lambda p: p.here.stiffness_N_per_m if p.here else None),
+    ("Diameter needed at worst", "mm", 1e3, _needed_at_worst_m),
+    ("Utilisation at worst", "%", 100.0, _used_at_worst),
+    (
+        "Mass of all cables, best rope",
+        "kg",
+        1.0,
+        lambda p: p.best.total_mass_kg if p.best else None,
+    ),
+)
+"""Title, unit, what leads to it from SI, and the figure of a state; None where it is not known."""
+
+
 def compare(before: Pin, after: Pin) -> Differences:
     """Return what has become otherwise; what is not known of one of the states is left out."""
-    was = {row.rope: row for row in before.ropes.rows} if before.ropes else {}
-    now = {row.rope: row for row in after.ropes.rows} if after.ropes else {}
-    both = [rope for rope in now if rope in was]
+    held, holds = (
+        {row.rope: row.holds for row in pin.ropes.rows} if pin.ropes else {}
+        for pin in (before, after)
+    )
+    both = [rope for rope in holds if rope in held]
     finals = {pin.ropes.is_final for pin in (before, after) if pin.ropes}
     return Differences(
         changes=tuple(_changes(before, after)),
-        lines=tuple(_lines(before, after)),
-        utilisation={
-            rope: FigureDifference(
-                rope.label, "%", 100.0, was[rope].utilisation, now[rope].utilisation
-            )
-            for rope in both
-        },
-        gained=tuple(rope for rope in both if now[rope].holds and not was[rope].holds),
-        lost=tuple(rope for rope in both if was[rope].holds and not now[rope].holds),
+        figures=tuple(_figures(before, after)),
+        gained=tuple(rope for rope in both if holds[rope] and not held[rope]),
+        lost=tuple(rope for rope in both if held[rope] and not holds[rope]),
         is_like_with_like=len(finals) < 2,
     )
 
 
 def _changes(before: Pin, after: Pin) -> Iterator[Change]:
-    was, now = ({one.path: one for one in pin.fields} for pin in (before, after))
+    was, now = ({field.path: field for field in pin.fields} for pin in (before, after))
     for path in dict.fromkeys([*was, *now]):
         old, new = was.get(path), now.get(path)
         if (old and old.meaning) != (new and new.meaning):
@@ -106,7 +132,7 @@ def _changes(before: Pin, after: Pin) -> Iterator[Change]:
     words = {
         "Rope": [_label(pin.question.rope) for pin in (before, after)],
         "Verdict": [pin.here.sentence if pin.here else "" for pin in (before, after)],
-        "Best rope": [_label(pin.ropes.best if pin.ropes else None) for pin in (before, after)],
+        "Best rope": [_label(pin.best.rope if pin.best else None) for pin in (before, after)],
     }
     for title, (old_text, new_text) in words.items():
         if old_text != new_text:
@@ -117,25 +143,12 @@ def _label(rope: Rope | RopePerCable | None) -> str:
     return "" if rope is None else rope.label
 
 
-def _lines(before: Pin, after: Pin) -> Iterator[FigureDifference]:
-    if before.here and after.here:
-        a, b = before.here, after.here
-        yield FigureDifference("Diameter needed here", "mm", 1e3, a.diameter_m, b.diameter_m)
-        yield FigureDifference("Largest tension here", "kN", 1e-3, a.max_tension_N, b.max_tension_N)
-        yield FigureDifference("Utilisation here", "%", 100.0, a.utilisation, b.utilisation)
-        yield FigureDifference(
-            "Stiffness here", "kN/m", 1e-3, a.stiffness_N_per_m, b.stiffness_N_per_m
-        )
-    if before.worst and after.worst:
-        was, now = before.worst, after.worst
-        if was.workspace.sagging and now.workspace.sagging:
-            d = was.workspace.sagging.diameter_m, now.workspace.sagging.diameter_m
-            yield FigureDifference("Diameter needed at worst", "mm", 1e3, *d)
-        if was.rope and now.rope:
-            yield FigureDifference(
-                "Utilisation at worst", "%", 100.0, was.rope.utilisation, now.rope.utilisation
-            )
-    best = [pin.ropes.row(pin.ropes.best) if pin.ropes else None for pin in (before, after)]
-    if best[0] and best[1]:
-        masses = best[0].total_mass_kg, best[1].total_mass_kg
-        yield FigureDifference("Mass of all cables, best rope", "kg", 1.0, *masses)
+def _figures(before: Pin, after: Pin) -> Iterator[Change]:
+    for title, unit, scale, figure in _FIGURES:
+        was, now = figure(before), figure(after)
+        if was is not None and now is not None:
+            texts = [
+                fmt.MISSING if math.isnan(value) else f"{fmt.number(scale * value, 4)} {unit}"
+                for value in (was, now)
+            ]
+            yield Change(title, texts[0], texts[1], scale * (now - was), unit)

@@ -14,9 +14,9 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPaintEvent, Q
 from PySide6.QtWidgets import QWidget
 
 from designer.arrays import FloatArray
+from designer.explore.desktop import theme
 from designer.explore.desktop.painting import Key
 from designer.explore.desktop.scene_actors import Camera
-from designer.explore.desktop.theme import LIGHT, Theme
 from designer.report import format as fmt
 from designer.report.figures.colours import Steps
 
@@ -31,7 +31,6 @@ class Overlay(QWidget):
         super().__init__(parent)
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self._camera = camera
-        self.theme: Theme = LIGHT
         self.names: list[tuple[str, FloatArray]] = []
         self.platform_m: FloatArray | None = None
         self.worst: tuple[FloatArray, str] | None = None
@@ -67,7 +66,7 @@ class Overlay(QWidget):
             self._write_boxed(painter, QPointF(10, 10), self.note)
 
     def _draw_names(self, painter: QPainter) -> None:
-        painter.setPen(QColor(self.theme.muted))
+        painter.setPen(QColor(theme.current().muted))
         for name, place in self.names:
             x, y = self._camera.pixels(place)
             width = painter.fontMetrics().horizontalAdvance(name)
@@ -79,8 +78,8 @@ class Overlay(QWidget):
             return
         place, text = self.worst
         x, y = self._camera.pixels(place)
-        marked = self.theme.muted if self.is_worst_old else self.theme.warning
-        for width, colour in ((5.0, self.theme.base), (2.0, marked)):
+        marked = theme.current().muted if self.is_worst_old else theme.current().warning
+        for width, colour in ((5.0, theme.current().base), (2.0, marked)):
             painter.setPen(QPen(QColor(colour), width))
             painter.drawEllipse(QPointF(x, y), 8, 8)
             painter.drawLine(QPointF(x - 13, y), QPointF(x - 4, y))
@@ -93,7 +92,7 @@ class Overlay(QWidget):
         if handle is None:
             return
         centre, tip = QPointF(*handle[0]), QPointF(*handle[1])
-        for width, colour in ((4.5, self.theme.base), (1.8, self.theme.accent)):
+        for width, colour in ((4.5, theme.current().base), (1.8, theme.current().accent)):
             painter.setPen(QPen(QColor(colour), width))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawEllipse(centre, HANDLE_PX, HANDLE_PX)
@@ -104,7 +103,7 @@ class Overlay(QWidget):
         """Write on a ground that keeps it readable, inside the picture."""
         box = QRectF(painter.boundingRect(QRectF(0, 0, 400, 200), 0, text))
         left = min(place.x(), self.width() - box.width() - 6)
-        ground = QColor(self.theme.base)
+        ground = QColor(theme.current().base)
         ground.setAlpha(200)
         area = QRectF(max(left, 4), max(place.y() - box.height(), 4), box.width(), box.height())
         painter.fillRect(area.adjusted(-3, -1, 3, 1), ground)
@@ -116,12 +115,12 @@ class Overlay(QWidget):
         box.adjust(0, 0, 16, 10)
         box.moveRight(min(box.right(), self.width() - 4))
         box.moveBottom(min(box.bottom(), self.height() - 4))
-        ground = QColor(self.theme.raised)
+        ground = QColor(theme.current().raised)
         ground.setAlpha(235)
-        painter.setPen(QPen(QColor(self.theme.border)))
+        painter.setPen(QPen(QColor(theme.current().border)))
         painter.setBrush(ground)
         painter.drawRoundedRect(box, 4, 4)
-        painter.setPen(QColor(self.theme.ink))
+        painter.setPen(QColor(theme.current().ink))
         painter.drawText(box.adjusted(8, 5, -8, -5), 0, text)
 
 
@@ -139,7 +138,6 @@ class Legend(QWidget):
         self.is_old = False
         self.steps: Steps | None = None
         self.keys: tuple[Key, ...] = ()
-        self._theme = LIGHT
 
     @property
     def texts(self) -> list[str]:
@@ -153,13 +151,12 @@ class Legend(QWidget):
         title: str,
         steps: Steps | None,
         keys: Sequence[Key],
-        theme: Theme,
         note: str = "",
         *,
         is_old: bool = False,
     ) -> None:
         """Show the title with its unit, a note, a scale if there is one, and other colours."""
-        self.title, self.steps, self.keys, self._theme = title, steps, tuple(keys), theme
+        self.title, self.steps, self.keys = title, steps, tuple(keys)
         self.note, self.is_old = note, is_old
         self.setVisible(bool(title))
         self.resize(self.sizeHint())
@@ -177,18 +174,18 @@ class Legend(QWidget):
         """Draw the legend."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        ground = QColor(self._theme.base)
+        ground = QColor(theme.current().base)
         ground.setAlpha(225)
-        painter.setPen(QPen(QColor(self._theme.border)))
+        painter.setPen(QPen(QColor(theme.current().border)))
         painter.setBrush(ground)
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 4, 4)
-        painter.setPen(QColor(self._theme.ink))
+        painter.setPen(QColor(theme.current().ink))
         box = self._title_box()
         painter.setFont(self._bold())
         painter.drawText(box, Qt.TextFlag.TextWordWrap, self.title)
         painter.setFont(self.font())
         box = self._note_box()
-        painter.setPen(QColor(self._theme.muted))
+        painter.setPen(QColor(theme.current().muted))
         painter.drawText(box, Qt.TextFlag.TextWordWrap, self.note)
         top = box.bottom() + 8
         if self.steps is not None:
@@ -209,7 +206,7 @@ class Legend(QWidget):
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(self._tint(QColor.fromRgbF(red, green, blue)))
             painter.drawRect(QRectF(_MARGIN, at(number + 1), _BAR, height / count + 0.5))
-        painter.setPen(QColor(self._theme.ink))
+        painter.setPen(QColor(theme.current().ink))
         ticks = set(steps.ticks.tolist())
         for number, edge in enumerate(steps.edges):
             if edge in ticks:
@@ -229,7 +226,7 @@ class Legend(QWidget):
             stripes = painter.brush()
             stripes.setColor(QColor(key.stripes))
             painter.fillRect(swatch, stripes)
-        painter.setPen(QColor(self._theme.ink))
+        painter.setPen(QColor(theme.current().ink))
         height = self._key_height(key)
         painter.drawText(
             QRectF(_MARGIN + _BAR + 8, top, _WIDTH - 2 * _MARGIN - _BAR - 8, height),

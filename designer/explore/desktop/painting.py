@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from designer.arrays import BoolArray, FloatArray
-from designer.explore.desktop.theme import Theme
+from designer.explore.desktop import theme
 from designer.explore.quantities import category_labels
 from designer.explore.question import cables_words
 from designer.model.verdict import Verdict
@@ -153,18 +153,18 @@ class Painting:
             unserved |= column("unserved") > 0.5
         return Values(scaled, unserved, left_out)
 
-    def colours(self, values: Values, theme: Theme) -> NDArray[np.uint8]:
+    def colours(self, values: Values) -> NDArray[np.uint8]:
         """Return red, green and blue (n, 3) of single points."""
         low, high = self.span
         count = self.table.n_values
         step = np.clip((np.nan_to_num(values.scaled) - low) / (high - low) * count, 0, count - 1)
         colours = np.asarray(self.table.values)[step.astype(int), :3].copy()
-        colours[~np.isfinite(values.scaled)] = rgb(theme.muted)
-        colours[values.is_left_out] = rgb(theme.left_out)
-        colours[values.is_unserved] = rgb(theme.hatch[1])
+        colours[~np.isfinite(values.scaled)] = rgb(theme.current().muted)
+        colours[values.is_left_out] = rgb(theme.current().left_out)
+        colours[values.is_unserved] = rgb(theme.current().hatch[1])
         return colours
 
-    def keys(self, answer: MapAnswer, theme: Theme) -> list[Key]:
+    def keys(self, answer: MapAnswer) -> list[Key]:
         """Return what beside the scale has to be explained, where it occurs."""
         values = self.of(answer, tuple(answer.grids))
         keys: list[Key] = []
@@ -175,9 +175,10 @@ class Painting:
                 if code % len(CATEGORIES) in present:
                     keys.append(Key(CATEGORIES[code % len(CATEGORIES)], meaning))
         if values.is_unserved.any():
-            keys.append(Key(theme.hatch[0], "no rope serves", theme.hatch[1]))
+            hatch = theme.current().hatch
+            keys.append(Key(hatch[0], "no rope serves", hatch[1]))
         if values.is_left_out.any():
-            keys.append(Key(theme.left_out, "left out: a cable hangs below"))
+            keys.append(Key(theme.current().left_out, "left out: a cable hangs below"))
         return keys
 
 

@@ -2,40 +2,28 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from operator import attrgetter
 
-from PySide6.QtWidgets import (
-    QCheckBox,
-    QHBoxLayout,
-    QLabel,
-    QPushButton,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QWidget
 
 from designer.explore.compare import Differences
 from designer.explore.desktop.live_session import LiveSession
-from designer.explore.desktop.tables import Column, RowsModel, table_view
-from designer.explore.desktop.widgets import grey_when_old
+from designer.explore.desktop.tables import Column, Table
+from designer.explore.desktop.widgets import (
+    beside,
+    button,
+    check_box,
+    grey_when_old,
+    panel,
+    result,
+)
 from designer.report import format as fmt
 
-
-@dataclass(frozen=True, slots=True)
-class _Row:
-    """A figure or a value in both states."""
-
-    title: str
-    before: str
-    after: str
-    difference: str
-
-
 _COLUMNS = (
-    Column("", lambda r: r.title, lambda r: r.title, "Figure, or value of the study.", False),
-    Column("A", lambda r: r.before, lambda r: r.before, "In the pinned state."),
-    Column("now", lambda r: r.after, lambda r: r.after, "In the present state."),
-    Column("difference", lambda r: r.difference, lambda r: r.difference, "Now less A."),
+    Column("", attrgetter("title"), "Figure, or value of the study."),
+    Column("A", lambda r: r.before or "–", "In the pinned state.", is_number=True),
+    Column("now", lambda r: r.after or "–", "In the present state.", is_number=True),
+    Column("difference", attrgetter("difference_text"), "Now less A.", is_number=True),
 )
 
 
@@ -45,36 +33,16 @@ class PanelCompare(QWidget):
     def __init__(self, live: LiveSession) -> None:
         super().__init__()
         self._live = live
-        self.setObjectName("compare")
-        self._pin = QPushButton("Pin this state as A")
-        self._pin.setObjectName("pin")
-        self._pin.clicked.connect(live.pin)
-        self._release = QPushButton("Release A")
-        self._release.setObjectName("release")
-        self._release.clicked.connect(live.release)
-        self.in_map = QCheckBox("The map shows the difference to A")
-        self.in_map.setObjectName("difference in the map")
-        self.in_map.toggled.connect(live.compare_in_map)
-        self._summary = QLabel()
-        self._summary.setWordWrap(True)
-        self._summary.setObjectName("ropes gained and lost")
-        self.model = RowsModel(_COLUMNS)
-        self.model.hint = lambda row: f"{row.title}: {row.before} → {row.after}"
-        self.table = table_view("differences")
-        self.table.setModel(self.model)
-        for column, width in enumerate((190, 190, 190)):
-            self.table.setColumnWidth(column, width)
-        self.table.horizontalHeader().setStretchLastSection(True)
-        above = QHBoxLayout()
-        for widget in (self._pin, self._release, self.in_map):
-            above.addWidget(widget)
-        above.addStretch(1)
-        rows = QVBoxLayout(self)
-        rows.setContentsMargins(8, 4, 8, 4)
-        rows.setSpacing(4)
-        rows.addLayout(above)
-        rows.addWidget(self._summary)
-        rows.addWidget(self.table, 1)
+        pin = button("pin", "Pin this state as A", live.pin)
+        self._release = button("release", "Release A", live.release)
+        self.in_map = check_box(
+            "difference in the map", "The map shows the difference to A", live.compare_in_map
+        )
+        self._summary = result("ropes gained and lost")
+        self.table = Table("differences", _COLUMNS, (190, 190, 190))
+        self.table.rows.hint = lambda r: f"{r.title}: {r.before or '–'} → {r.after or '–'}"
+        above = beside(pin, self._release, self.in_map, None)
+        panel(self, "compare", above, self._summary, self.table)
         live.answered.connect(self._show_differences)
         live.changed.connect(self._show_differences)
         grey_when_old(live, {"here", "worst", "ropes"}, self._summary, self.table)
@@ -82,21 +50,15 @@ class PanelCompare(QWidget):
 
     def _show_differences(self) -> None:
         differences = self._live.differences()
-        is_pinned = differences is not None
-        self._release.setEnabled(is_pinned)
-        self.in_map.setEnabled(is_pinned)
+        self._release.setEnabled(differences is not None)
+        self.in_map.setEnabled(differences is not None)
         if differences is None:
             self.in_map.setChecked(False)
             self._summary.setText("Nothing is pinned: pin a state, go on, and see what changes.")
-            self.model.show(())
-            return
-        self._summary.setText(_summary(differences))
-        rows = [_Row(c.title, c.before or "–", c.after or "–", "") for c in differences.changes]
-        for line in differences.lines:
-            before, after = (_text(v, line.scale, line.unit) for v in (line.before, line.after))
-            change = _signed(line.difference, line.scale, line.unit)
-            rows.append(_Row(line.title, before, after, change))
-        self.model.show(rows)
+            self.table.rows.show(())
+        else:
+            self._summary.setText(_summary(differences))
+            self.table.rows.show((*differences.changes, *differences.figures))
 
 
 def _summary(differences: Differences) -> str:
@@ -109,14 +71,3 @@ def _summary(differences: Differences) -> str:
     if not differences.is_like_with_like:
         parts.append("The candidates of one state are at the samples, those of the other in full.")
     return " ".join(parts) or "The same ropes hold as in A."
-
-
-def _text(value: float, scale: float, unit: str) -> str:
-    return fmt.MISSING if math.isnan(value) else f"{fmt.number(scale * value, 4)} {unit}"
-
-
-def _signed(value: float, scale: float, unit: str) -> str:
-    if math.isnan(value):
-        return fmt.MISSING
-    text = fmt.number(scale * value, 3)
-    return f"{'' if text.startswith('−') or value == 0.0 else '+'}{text} {unit}"

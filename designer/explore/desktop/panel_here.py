@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import math
-from operator import attrgetter
 
 import numpy as np
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import (
-    QFormLayout,
-    QGridLayout,
-    QHeaderView,
-    QLabel,
-    QPushButton,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QFormLayout, QGridLayout, QHeaderView, QLabel, QVBoxLayout, QWidget
 
 from designer.explore.desktop.live_session import LiveSession
-from designer.explore.desktop.tables import Column, RowsModel, ShareBar, table_view
-from designer.explore.desktop.theme import Theme
-from designer.explore.desktop.widgets import LineEntry, grey_when_old, restyle
+from designer.explore.desktop.tables import Column, Table, number_column
+from designer.explore.desktop.widgets import (
+    LineEntry,
+    button,
+    fill,
+    grey_when_old,
+    label,
+    named,
+    restyle,
+    result,
+)
 from designer.explore.here import Here
 from designer.explore.question import cables_words
 from designer.report import format as fmt
@@ -29,54 +27,53 @@ from designer.report import format as fmt
 def _columns(unit: str, per_N: float) -> tuple[Column, ...]:
     """The columns, with tensions in a unit."""
 
-    def scaled(title: str, name: str, scale: float, digits: int, definition: str) -> Column:
-        read = attrgetter(name)
-        return Column(title, lambda c: fmt.number(scale * read(c), digits), read, definition)
+    def tension(value: float) -> str:
+        return fmt.number(per_N * value, 4)
+
+    def millimetres(value: float) -> str:
+        return fmt.number(1e3 * value, 3)
 
     return (
-        Column(
-            "#", lambda c: str(c.number), lambda c: c.number, "The cable, in the order of anchors."
-        ),
-        Column(
+        number_column("#", "number", "The cable, in the order of anchors.", str),
+        number_column(
             "length\nm",
-            lambda c: fmt.fixed(c.length_m, 3),
-            lambda c: c.length_m,
+            "length_m",
             "Unstrained length from the exit point to the platform, as the winch pays it out.",
+            lambda value: fmt.fixed(value, 3),
         ),
-        scaled(
+        number_column(
             f"T exit\n{unit}",
             "exit_tension_N",
-            per_N,
-            4,
             "Tension at the exit point, where the winch pulls.",
+            tension,
         ),
-        scaled(f"T load\n{unit}", "platform_tension_N", per_N, 4, "Tension at the platform end."),
-        Column(
+        number_column(
+            f"T load\n{unit}", "platform_tension_N", "Tension at the platform end.", tension
+        ),
+        number_column(
             "angle\n°",
-            lambda c: fmt.fixed(math.degrees(c.angle_rad), 1),
-            lambda c: c.angle_rad,
+            "angle_rad",
             "How far below the horizontal the cable leaves its exit point.",
+            lambda value: fmt.fixed(math.degrees(value), 1),
         ),
-        scaled(
+        number_column(
             "sag\nmm",
             "sag_m",
-            1e3,
-            3,
             "Largest distance of the cable from the straight line between its ends.",
+            millimetres,
         ),
-        scaled(
+        number_column(
             "stretch\nmm",
             "stretch_m",
-            1e3,
-            3,
             "How much longer the cable is under its load than unstrained.",
+            millimetres,
         ),
-        Column(
+        number_column(
             "used\n%",
-            lambda c: fmt.fixed(100.0 * c.utilisation, 1),
-            lambda c: c.utilisation,
+            "utilisation",
             "Utilisation: largest tension anywhere in the cable over the allowable tension.",
-            share=lambda c: float(c.utilisation),
+            lambda value: fmt.fixed(100.0 * value, 1),
+            share=lambda cable: cable.utilisation,
         ),
     )
 
@@ -89,6 +86,15 @@ _COORDINATES = (
     ("ry", "°", "Rotation vector of the platform, y component"),
     ("rz", "°", "Rotation vector of the platform, z component"),
 )
+_FACTS = (
+    ("cables", "Cables", "What length, tension, sag and utilisation here are of; another rope is "
+     "chosen by a click in its table."),
+    ("diameter", "Diameter needed here", "The thinnest cable of the configured family that holds "
+     "this pose with its own weight and stretch."),
+    ("tension", "Largest tension", "Anywhere in any cable of this pose."),
+    ("stiffness", "Stiffness", "Smallest force over displacement of the platform in any direction, "
+     "winches held."),
+)  # fmt: skip
 
 
 class PanelHere(QWidget):
@@ -102,34 +108,33 @@ class PanelHere(QWidget):
         self._place = np.zeros(6)
         self._entries: list[LineEntry] = []
         self._turn_labels: list[QLabel] = []
-        rows = QVBoxLayout(self)
-        rows.setContentsMargins(8, 6, 8, 6)
-        rows.addLayout(self._coordinates())
-        self.verdict = _text("verdict")
-        self.cautions = _text("cautions", "fault")
-        rows.addWidget(self.verdict)
-        rows.addWidget(self.cautions)
-        self.model = RowsModel(_columns("kN", 1e-3))
-        self.table = table_view("cables")
-        self.table.setModel(self.model)
+        self.verdict, self.cautions = result("verdict"), result("cautions", "fault")
+        self.facts = {name: result(f"here {name}", tip=tip) for name, _, tip in _FACTS}
+        self.stability = result(
+            "here stability", tip="Whether the platform stays here with the winches held."
+        )
+        self.table = Table("cables", _columns("kN", 1e-3))
         small = self.table.font()
         small.setPointSizeF(0.9 * small.pointSizeF())
         self.table.setFont(small)
-        self._bar = ShareBar(self.table)
-        self.table.setItemDelegateForColumn(len(self.model.columns) - 1, self._bar)
         head = self.table.horizontalHeader()
         head.setMinimumSectionSize(18)
         head.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        head.setSectionResizeMode(len(self.model.columns) - 1, QHeaderView.ResizeMode.Stretch)
-        rows.addLayout(self._facts())
-        self.stability = _text("here stability")
-        self.stability.setToolTip("<p>Whether the platform stays here with the winches held.</p>")
-        rows.addWidget(self.stability)
+        head.setSectionResizeMode(head.count() - 1, QHeaderView.ResizeMode.Stretch)
+        keep = button(
+            "keep pose",
+            "Keep as the study's pose",
+            live.keep_pose,
+            "Writes this place under <b>pose:</b> of the study.",
+        )
+        form = QFormLayout()
+        form.setVerticalSpacing(2)
+        for name, title, definition in _FACTS:
+            form.addRow(label(title, "muted", definition), self.facts[name])
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(8, 6, 8, 6)
+        fill(rows, self._coordinates(), self.verdict, self.cautions, form, self.stability)
         rows.addWidget(self.table, 1)
-        keep = QPushButton("Keep as the study's pose")
-        keep.setObjectName("keep pose")
-        keep.setToolTip("<p>Writes this place under <b>pose:</b> of the study.</p>")
-        keep.clicked.connect(live.keep_pose)
         rows.addWidget(keep)
         live.moved.connect(self._show_place)
         live.listen(self._show_here, "here")
@@ -140,46 +145,18 @@ class PanelHere(QWidget):
         grid = QGridLayout()
         grid.setHorizontalSpacing(4)
         for number, (name, unit, definition) in enumerate(_COORDINATES):
-            entry = LineEntry()
-            entry.setObjectName(f"place {name}")
+            entry = named(LineEntry(), f"place {name}")
             entry.meaning = f"<p>{definition} [{unit}]. Return takes the platform there.</p>"
             entry.mark("")
             entry.setAccessibleName(f"{name} [{unit}]")
             entry.returnPressed.connect(self._entered)
-            label = QLabel(f"{name} [{unit}]")
-            label.setProperty("role", "muted")
+            title = label(f"{name} [{unit}]", "muted")
             row, column = divmod(number, 3)
-            grid.addWidget(label, row, 2 * column)
+            grid.addWidget(title, row, 2 * column)
             grid.addWidget(entry, row, 2 * column + 1)
             self._entries.append(entry)
-            self._turn_labels += [label] if row else []
+            self._turn_labels += [title] if row else []
         return grid
-
-    def _facts(self) -> QFormLayout:
-        form = QFormLayout()
-        form.setVerticalSpacing(2)
-        self.facts: dict[str, QLabel] = {}
-        for name, title, definition in (
-            ("cables", "Cables", "What length, tension, sag and utilisation here are of; another "
-             "rope is chosen by a click in its table."),
-            ("diameter", "Diameter needed here", "The thinnest cable of the configured family that "
-             "holds this pose with its own weight and stretch."),
-            ("tension", "Largest tension", "Anywhere in any cable of this pose."),
-            ("stiffness", "Stiffness", "Smallest force over displacement of the platform in any "
-             "direction, winches held."),
-        ):  # fmt: skip
-            value, label = _text(f"here {name}"), QLabel(title)
-            label.setProperty("role", "muted")
-            for part in (value, label):
-                part.setToolTip(f"<p>{definition}</p>")
-            form.addRow(label, value)
-            self.facts[name] = value
-        return form
-
-    def put_on(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        self._bar.theme = theme
-        self.table.viewport().update()
 
     def _show_place(self) -> None:
         """Show where the platform is; an entry that is being written in is left alone."""
@@ -196,29 +173,29 @@ class PanelHere(QWidget):
                 entry.setText(f"{round(float(value), 4) + 0.0:g}")
                 entry.mark("")
             entry.setVisible(can_turn or number < 3)
-        for label in self._turn_labels:
-            label.setVisible(can_turn)
+        for title in self._turn_labels:
+            title.setVisible(can_turn)
 
     def _show_here(self, answer: Here | None) -> None:
         """Show what was answered for this place."""
         if answer is None:
-            self.model.show(())
+            self.table.rows.show(())
             return
         self.verdict.setText(answer.sentence)
         good = answer.is_solved and not answer.is_too_weak
-        restyle(self.verdict, "good" if good else "fault")
+        restyle(self.verdict, "role", "good" if good else "fault")
         cautions = " ".join(filter(None, [answer.outside, answer.caution]))
         self.cautions.setText(cautions)
         self.cautions.setVisible(bool(cautions))
         unit, newtons = fmt.force_unit(answer.max_tension_N)
-        self.model.rename(_columns(unit, 1.0 / newtons))
-        self.model.show(answer.cables)
+        self.table.rows.rename(_columns(unit, 1.0 / newtons))
+        self.table.rows.show(answer.cables)
         self.facts["cables"].setText(cables_words(answer.rope))
         self.facts["diameter"].setText(fmt.millimetres(answer.diameter_m))
         self.facts["tension"].setText(fmt.newtons(answer.max_tension_N))
         self.facts["stiffness"].setText(_stiffness(answer.stiffness_N_per_m))
         self.stability.setText(answer.stability)
-        restyle(self.stability, "fault" if answer.is_stable is False else "")
+        restyle(self.stability, "role", "fault" if answer.is_stable is False else "")
 
     def _entered(self) -> None:
         place = self._place.copy()
@@ -242,13 +219,3 @@ def _stiffness(value: float) -> str:
         return fmt.MISSING
     unit, scale = ("kN/m", 1e-3) if value >= 1e3 else ("N/m", 1.0)
     return f"{fmt.number(scale * value, 3)} {unit}"
-
-
-def _text(name: str, role: str = "") -> QLabel:
-    label = QLabel()
-    label.setObjectName(name)
-    label.setWordWrap(True)
-    label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-    if role:
-        label.setProperty("role", role)
-    return label

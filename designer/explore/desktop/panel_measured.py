@@ -7,21 +7,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import (
-    QCheckBox,
-    QFrame,
-    QHBoxLayout,
-    QLabel,
-    QPushButton,
-    QScrollArea,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from designer.arrays import FloatArray
+from designer.explore.desktop import theme
 from designer.explore.desktop.live_session import LiveSession
-from designer.explore.desktop.theme import LIGHT, Theme
-from designer.explore.desktop.widgets import DropDown, grey_when_old
+from designer.explore.desktop.widgets import (
+    DropDown,
+    beside,
+    button,
+    check_box,
+    grey_when_old,
+    panel,
+    result,
+)
 from designer.report import format as fmt
 from designer.report.figures.overlay import ticks_between
 
@@ -42,77 +41,54 @@ class PanelMeasured(QWidget):
     def __init__(self, live: LiveSession) -> None:
         super().__init__()
         self._live = live
-        self.setObjectName("measured")
         self._residuals: Residuals | None = None
         self._diagnosis: DiagnosisAnswer | None = None
         self.channel, self.over = DropDown("channel", 14), DropDown("covariate", 10)
-        self.without = QCheckBox("also without effects")
-        self.without.setObjectName("without effects")
-        self.without.setToolTip(
-            "<p>Draws beside them, paler, what a model without the declared effects leaves.</p>"
-        )
-        self.in_scene = QCheckBox("in the scene")
-        self.in_scene.setObjectName("rows in the scene")
-        self.in_scene.toggled.connect(self.rows_wanted)
-        self.plot = ScatterPlot()
         for box in (self.channel, self.over):
             box.currentIndexChanged.connect(self._draw)
-        self.without.toggled.connect(self._draw)
-        self._diagnose = QPushButton("Diagnose")
-        self._diagnose.setObjectName("diagnose")
-        self._diagnose.setToolTip(
-            "<p>Searches for the physical effects that the model lacks; some minutes.</p>"
+        self.without = check_box(
+            "without effects",
+            "also without effects",
+            self._draw,
+            "Draws beside them, paler, what a model without the declared effects leaves.",
         )
-        self._diagnose.clicked.connect(lambda: live.begin_long("diagnose"))
-        self._take = QPushButton("Take over what was found")
-        self._take.setObjectName("take over")
-        self._take.setToolTip(
-            "<p>Writes the effects into the study as one step, with this state pinned as A: the "
-            "comparison shows map and answer with and without them.</p>"
-        )
-        self._take.clicked.connect(self._take_over)
-        self.summary = QLabel()
-        self.summary.setObjectName("diagnosis")
-        self.summary.setWordWrap(True)
+        in_scene = check_box("rows in the scene", "in the scene", self.rows_wanted.emit)
+        self.plot, self.summary = ScatterPlot(), result("diagnosis")
+        self.summary.setTextFormat(Qt.TextFormat.RichText)
         self.summary.setAlignment(Qt.AlignmentFlag.AlignTop)
-        self.summary.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        self._lay_out()
+        self._take = button(
+            "take over",
+            "Take over what was found",
+            self._take_over,
+            "Writes the effects into the study as one step, with this state pinned as A: the "
+            "comparison shows map and answer with and without them.",
+        )
+        above = beside("Residual of", self.channel, "over", self.over, self.without, in_scene, None)
+        panel(self, "measured", above, self._plot_and_answer())
         live.listen(self._show_residuals, "residuals")
         live.listen(self._show_diagnosis, "diagnose")
         grey_when_old(live, {"residuals"}, self.plot)
         grey_when_old(live, {"diagnose"}, self.summary)
         self._show_diagnosis(None)
 
-    def _lay_out(self) -> None:
-        above = QHBoxLayout()
-        above.addWidget(QLabel("Residual of"))
-        above.addWidget(self.channel)
-        above.addWidget(QLabel("over"))
-        above.addWidget(self.over)
-        for widget in (self.without, self.in_scene):
-            above.addWidget(widget)
-        above.addStretch(1)
+    def _plot_and_answer(self) -> QHBoxLayout:
         area = QScrollArea()  # beside the plot: a long answer shall not squeeze it
         area.setWidget(self.summary)
         area.setWidgetResizable(True)
         area.setFrameShape(QFrame.Shape.NoFrame)
-        answer = QVBoxLayout()
+        diagnose = button(
+            "diagnose",
+            "Diagnose",
+            lambda: self._live.begin_long("diagnose"),
+            "Searches for the physical effects that the model lacks; some minutes.",
+        )
+        answer, both = QVBoxLayout(), QHBoxLayout()
         answer.addWidget(area, 1)
-        for button in (self._diagnose, self._take):
-            answer.addWidget(button)
-        beside = QHBoxLayout()
-        beside.addWidget(self.plot, 2)
-        beside.addLayout(answer, 1)
-        rows = QVBoxLayout(self)
-        rows.setContentsMargins(8, 4, 8, 4)
-        rows.setSpacing(4)
-        rows.addLayout(above)
-        rows.addLayout(beside, 1)
-
-    def put_on(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        self.plot.theme = theme
-        self.plot.update()
+        for part in (diagnose, self._take):
+            answer.addWidget(part)
+        both.addWidget(self.plot, 2)
+        both.addLayout(answer, 1)
+        return both
 
     def _show_residuals(self, residuals: Residuals | None) -> None:
         """Show what is left of the readings."""
@@ -177,7 +153,6 @@ class ScatterPlot(QWidget):
         super().__init__()
         self.setObjectName("residual plot")
         self.setMinimumHeight(90)
-        self.theme: Theme = LIGHT
         self.points = np.empty((0, 2))
         self._pale = np.empty((0, 2))
         self._labels = ("", "")
@@ -194,11 +169,11 @@ class ScatterPlot(QWidget):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw axes, band and points."""
-        painter = QPainter(self)
+        painter, colours = QPainter(self), theme.current()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         everything = np.concatenate([self.points, self._pale])
         if len(everything) == 0:
-            painter.setPen(QColor(self.theme.muted))
+            painter.setPen(QColor(colours.muted))
             painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, "no residuals")
             return
         low, high = everything.min(axis=0), everything.max(axis=0)
@@ -217,12 +192,12 @@ class ScatterPlot(QWidget):
         self._draw_axes(painter, area, low, high)
         painter.setClipRect(area)
         painter.setPen(Qt.PenStyle.NoPen)
-        band = QColor(self.theme.good)
+        band = QColor(colours.good)
         band.setAlpha(40)
         bottom, top = at(np.array([low[0], -reach])), at(np.array([high[0], reach]))
         painter.fillRect(QRectF(bottom, top).normalized(), band)
-        fresh = self.theme.muted if self.property("old") else self.theme.accent
-        for points, colour in ((self._pale, self.theme.muted), (self.points, fresh)):
+        fresh = colours.muted if self.property("old") else colours.accent
+        for points, colour in ((self._pale, colours.muted), (self.points, fresh)):
             ink = QColor(colour)
             ink.setAlpha(110 if points is self._pale else 200)
             painter.setBrush(ink)
@@ -232,13 +207,14 @@ class ScatterPlot(QWidget):
     def _draw_axes(
         self, painter: QPainter, area: QRectF, low: FloatArray, high: FloatArray
     ) -> None:
-        painter.setPen(QPen(QColor(self.theme.border)))
+        colours = theme.current()
+        painter.setPen(QPen(QColor(colours.border)))
         painter.drawRect(area)
         line = self.fontMetrics().height()
         for axis in (0, 1):
             for tick in ticks_between(float(low[axis]), float(high[axis])):
                 share = (tick - low[axis]) / (high[axis] - low[axis])
-                painter.setPen(QColor(self.theme.muted))
+                painter.setPen(QColor(colours.muted))
                 text = fmt.trimmed(float(tick), 4)
                 if axis == 0:
                     x = area.left() + share * area.width()
@@ -248,9 +224,9 @@ class ScatterPlot(QWidget):
                     y = area.bottom() - share * area.height()
                     box = QRectF(0, y - 0.5 * line, area.left() - 5, line)
                     painter.drawText(box, Qt.AlignmentFlag.AlignRight, text)
-                    painter.setPen(QPen(QColor(self.theme.border), 0.5))
+                    painter.setPen(QPen(QColor(colours.border), 0.5))
                     painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y))
-        painter.setPen(QColor(self.theme.ink))
+        painter.setPen(QColor(colours.ink))
         below = QRectF(area.left(), area.bottom() + line, area.width(), line + 4)
         painter.drawText(below, Qt.AlignmentFlag.AlignHCenter, self._labels[0])
         painter.drawText(QPointF(area.left() + 6, area.top() + line), self._labels[1])

@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from operator import attrgetter
+from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QModelIndex, QSortFilterProxyModel, Qt
-from PySide6.QtWidgets import (
-    QCheckBox,
-    QHBoxLayout,
-    QLabel,
-    QPushButton,
-    QSizePolicy,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtCore import QModelIndex
+from PySide6.QtWidgets import QWidget
 
 from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.panel_requirements import answer_words
-from designer.explore.desktop.tables import SORT, Column, Index, RowsModel, ShareBar, table_view
-from designer.explore.desktop.theme import Theme
-from designer.explore.desktop.widgets import DropDown, grey_when_old
+from designer.explore.desktop.tables import Column, Table, number_column
+from designer.explore.desktop.widgets import (
+    DropDown,
+    beside,
+    button,
+    check_box,
+    grey_when_old,
+    panel,
+    result,
+)
 from designer.report import format as fmt
 from designer.report.design.proof import proof_statement
 
@@ -33,20 +32,8 @@ _ALL_MATERIALS, _ALL_MAKERS = "all materials", "all makers"
 _NOTHING = "Nothing yet: ropes are compared over the workspace of the study."
 
 
-def _number(title: str, name: str, scale: float, digits: int, definition: str) -> Column:
-    def text(row: RopeRow) -> str:
-        value = getattr(row, name)
-        return fmt.MISSING if value is None else fmt.number(scale * value, digits)
-
-    return Column(title, text, _key(name), definition)
-
-
-def _key(name: str) -> Callable[[Any], Any]:
-    def key(row: Any) -> float:
-        value = getattr(row, name)
-        return math.inf if value is None or math.isnan(value) else float(value)
-
-    return key
+def _scaled(title: str, name: str, scale: float, digits: int, definition: str) -> Column:
+    return number_column(title, name, definition, lambda v: fmt.number(scale * v, digits))
 
 
 _STANDINGS = (
@@ -64,40 +51,34 @@ def _rank(row: RopeRow) -> float:
 
 
 COLUMNS = (
-    Column("rope", lambda r: r.rope.size_id, lambda r: r.diameter_m, "Size of the grade.", False),
-    Column(
-        "grade",
-        lambda r: r.rope.grade_id,
-        lambda r: r.rope.grade_id,
-        "Grade of the catalogue.",
-        False,
-    ),
-    Column("maker", lambda r: r.maker, lambda r: r.maker, "Who sells it, or its standard.", False),
-    Column("material", lambda r: r.material, lambda r: r.material, "What it is made of.", False),
-    _number("d [mm]", "diameter_m", 1e3, 3, "Nominal diameter."),
-    Column(
+    Column("rope", attrgetter("rope.size_id"), "Size of the grade.", attrgetter("diameter_m")),
+    Column("grade", attrgetter("rope.grade_id"), "Grade of the catalogue."),
+    Column("maker", attrgetter("maker"), "Who sells it, or its standard."),
+    Column("material", attrgetter("material"), "What it is made of."),
+    _scaled("d [mm]", "diameter_m", 1e3, 3, "Nominal diameter."),
+    number_column(
         "utilisation",
-        lambda r: fmt.utilisation(r.utilisation),
-        _key("utilisation"),
+        "utilisation",
         "Largest tension at any pose of the workspace over the allowable tension; over 100 % it is "
         "too weak.",
-        share=lambda r: float(r.utilisation),
+        fmt.utilisation,
+        share=attrgetter("utilisation"),
     ),
-    _number("mass [kg]", "total_mass_kg", 1.0, 4, "All cables at the longest length each needs."),
-    _number("kg/m", "linear_mass_kg_per_m", 1.0, 3, "Mass per length."),
-    _number("MBL [kN]", "breaking_load_N", 1e-3, 4, "Minimum breaking load."),
-    _number("largest T [kN]", "max_tension_N", 1e-3, 4, "Largest tension anywhere in any cable."),
-    _number("drum [mm]", "drum_diameter_m", 1e3, 4, "Least diameter of drums and sheaves."),
-    _number("stiffness [kN/m]", "stiffness_N_per_m", 1e-3, 3, "Least stiffness of the platform."),
-    _number("cost", "cost", 1.0, 4, "Of all cables, where the grade has a price."),
+    _scaled("mass [kg]", "total_mass_kg", 1.0, 4, "All cables at the longest length each needs."),
+    _scaled("kg/m", "linear_mass_kg_per_m", 1.0, 3, "Mass per length."),
+    _scaled("MBL [kN]", "breaking_load_N", 1e-3, 4, "Minimum breaking load."),
+    _scaled("largest T [kN]", "max_tension_N", 1e-3, 4, "Largest tension anywhere in any cable."),
+    _scaled("drum [mm]", "drum_diameter_m", 1e3, 4, "Least diameter of drums and sheaves."),
+    _scaled("stiffness [kN/m]", "stiffness_N_per_m", 1e-3, 3, "Least stiffness of the platform."),
+    _scaled("cost", "cost", 1.0, 4, "Of all cables, where the grade has a price."),
     Column(
         "what became of it",
-        lambda r: r.reason,
-        _rank,
+        attrgetter("reason"),
         "Why it is in or out; the best by the objectives of the study first.",
-        is_number=False,
+        _rank,
     ),
 )
+_WIDTHS = (72, 180, 116, 72, 60, 84, 78, 56, 80, 104, 84, 116, 60)
 
 
 class PanelRopes(QWidget):
@@ -106,91 +87,54 @@ class PanelRopes(QWidget):
     def __init__(self, live: LiveSession) -> None:
         super().__init__()
         self._live = live
-        self.setObjectName("ropes")
         self._ropes: Ropes | None = None
         self._rope: Rope | RopePerCable | None = None
-        self.model = RowsModel(COLUMNS)
-        self.model.bold = lambda row: self._ropes is not None and row.rope == self._ropes.best
-        self.model.muted = lambda row: not row.holds
-        self.model.hint = lambda row: row.reason
-        self.filtered = _Filter(self.model)
-        self.table = table_view("candidates")
-        self.table.setModel(self.filtered)
-        self.table.setSortingEnabled(True)
-        self.table.sortByColumn(len(COLUMNS) - 1, Qt.SortOrder.AscendingOrder)
-        self.table.horizontalHeader().setStretchLastSection(True)
-        self._bar = ShareBar(self.table)
-        self.table.setItemDelegateForColumn(5, self._bar)
+        self.table = Table("candidates", COLUMNS, _WIDTHS, sorted_by=len(COLUMNS) - 1)
+        self.table.rows.bold = lambda row: self._ropes is not None and row.rope == self._ropes.best
+        self.table.rows.muted = lambda row: not row.holds
+        self.table.rows.hint = attrgetter("reason")
         self.table.selectionModel().currentRowChanged.connect(self._current_changed)
-        for column, width in enumerate((72, 180, 116, 72, 60, 84, 78, 56, 80, 104, 84, 116, 60)):
-            self.table.setColumnWidth(column, width)
-        rows = QVBoxLayout(self)
-        rows.setContentsMargins(8, 4, 8, 4)
-        rows.setSpacing(4)
-        rows.addLayout(self._above())
-        rows.addWidget(self.answer)
-        rows.addLayout(self._groups_row())
-        rows.addWidget(self.table, 1)
+        self.material = DropDown("material", 9, _ALL_MATERIALS)
+        self.maker = DropDown("maker", 9, _ALL_MAKERS)
+        for choice in (self.material, self.maker):
+            choice.currentTextChanged.connect(self._filter)
+        self.only_holding = check_box("only what holds", "only what holds", self._filter)
+        family = button(
+            "no rope",
+            "No rope: the family",
+            lambda: live.choose(None),
+            "Colours the map for the thinnest cable of the configured family at each pose.",
+        )
+        self.select = button(
+            "full selection",
+            "Full selection",
+            lambda: live.begin_long("select"),
+            "Chooses as the report does, between the samples as well, and for groups of cables "
+            "where the study has some; then proves that the best holds in all poses, as far as "
+            "the study gives it time. Until then the table holds at the samples.",
+        )
+        self.answer, self.groups = result("best rope"), result("groups")
+        self.look_at_groups = button(
+            "look at groups",
+            "Look at the groups",
+            self._choose_groups,
+            "Colours the map with each group's own rope.",
+        )
+        panel(
+            self,
+            "ropes",
+            beside(self.material, self.maker, self.only_holding, None, family, self.select),
+            self.answer,
+            beside(self.groups, self.look_at_groups),
+            self.table,
+        )
         live.listen(self._show_ropes, "ropes", "select")
         live.changed.connect(self._follow_rope)
         grey_when_old(live, {"ropes"}, self.answer, self.groups, self.table)
 
-    def _above(self) -> QHBoxLayout:
-        self.material = DropDown("material", 9, _ALL_MATERIALS)
-        self.maker = DropDown("maker", 9, _ALL_MAKERS)
-        self.material.currentTextChanged.connect(self._filter)
-        self.maker.currentTextChanged.connect(self._filter)
-        self.only_holding = QCheckBox("only what holds")
-        self.only_holding.setObjectName("only what holds")
-        self.only_holding.toggled.connect(self._filter)
-        self.answer = QLabel()
-        self.answer.setObjectName("best rope")
-        self.answer.setTextFormat(Qt.TextFormat.PlainText)
-        self.answer.setWordWrap(True)
-        self.answer.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        family = QPushButton("No rope: the family")
-        family.setObjectName("no rope")
-        family.setToolTip(
-            "<p>Colours the map for the thinnest cable of the configured family at each pose.</p>"
-        )
-        family.clicked.connect(lambda: self._live.choose(None))
-        self.select = QPushButton("Full selection")
-        self.select.setObjectName("full selection")
-        self.select.setToolTip(
-            "<p>Chooses as the report does, between the samples as well, and for groups of cables "
-            "where the study has some; then proves that the best holds in all poses, as far as "
-            "the study gives it time. Until then the table holds at the samples.</p>"
-        )
-        self.select.clicked.connect(lambda: self._live.begin_long("select"))
-        above = QHBoxLayout()
-        for widget in (self.material, self.maker, self.only_holding):
-            above.addWidget(widget)
-        above.addStretch(1)
-        above.addWidget(family)
-        above.addWidget(self.select)
-        return above
-
-    def _groups_row(self) -> QHBoxLayout:
-        self.groups = QLabel()
-        self.groups.setObjectName("groups")
-        self.groups.setWordWrap(True)
-        self.look_at_groups = QPushButton("Look at the groups")
-        self.look_at_groups.setObjectName("look at groups")
-        self.look_at_groups.setToolTip("<p>Colours the map with each group's own rope.</p>")
-        self.look_at_groups.clicked.connect(self._choose_groups)
-        row = QHBoxLayout()
-        row.addWidget(self.groups, 1)
-        row.addWidget(self.look_at_groups)
-        return row
-
     def _choose_groups(self) -> None:
         if self._ropes is not None and self._ropes.groups is not None:
             self._live.choose(self._ropes.groups.assignment)
-
-    def put_on(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        self._bar.theme = theme
-        self.model.put_on(theme)
 
     def _follow_rope(self) -> None:
         """Mark the rope that colours the map."""
@@ -201,7 +145,7 @@ class PanelRopes(QWidget):
     def _show_ropes(self, ropes: Ropes | None) -> None:
         """Show the candidates, and which of them colours the map."""
         self._ropes, self._rope = ropes, self._live.rope
-        self.model.show(() if ropes is None else ropes.rows)
+        self.table.rows.show(() if ropes is None else ropes.rows)
         if ropes is not None:
             self.material.refill([_ALL_MATERIALS, *ropes.materials])
             self.maker.refill([_ALL_MAKERS, *ropes.makers])
@@ -214,58 +158,27 @@ class PanelRopes(QWidget):
         self._mark_current()
 
     def _mark_current(self) -> None:
-        rows = [row.rope for row in self.model.rows]
-        selection = self.table.selectionModel()
-        selection.blockSignals(True)
-        if self._rope in rows:
-            source = self.model.index(rows.index(self._rope), 0)
-            self.table.setCurrentIndex(self.filtered.mapFromSource(source))
-        else:
-            self.table.clearSelection()
-            self.table.setCurrentIndex(QModelIndex())
-        selection.blockSignals(False)
-        self.table.viewport().update()
+        self.table.mark(lambda row: row.rope == self._rope)
 
     def _current_changed(self, current: QModelIndex, _: QModelIndex) -> None:
         if current.isValid():
-            rope = self.model.rows[self.filtered.mapToSource(current).row()].rope
+            rope = self.table.row_at(current).rope
             if rope != self._rope:
                 self._rope = rope
                 self._live.choose(rope)
 
     def _filter(self) -> None:
-        self.filtered.narrow(
-            "" if self.material.currentText() == _ALL_MATERIALS else self.material.currentText(),
-            "" if self.maker.currentText() == _ALL_MAKERS else self.maker.currentText(),
-            self.only_holding.isChecked(),
+        materials = (_ALL_MATERIALS, self.material.currentText())
+        makers = (_ALL_MAKERS, self.maker.currentText())
+        only_holding = self.only_holding.isChecked()
+        self.table.narrow(
+            lambda row: (
+                (materials[0] == materials[1] or row.material == materials[1])
+                and (makers[0] == makers[1] or row.maker == makers[1])
+                and (row.holds or not only_holding)
+            )
         )
         self._mark_current()
-
-
-class _Filter(QSortFilterProxyModel):
-    """Rows of some material and maker."""
-
-    def __init__(self, source: RowsModel) -> None:
-        super().__init__()
-        self.setSourceModel(source)
-        self.setSortRole(SORT)
-        self._source = source
-        self._material = self._maker = ""
-        self._only_holding = False
-
-    def narrow(self, material: str, maker: str, only_holding: bool) -> None:
-        """Show rows of this material and maker alone; of all where empty."""
-        self._material, self._maker, self._only_holding = material, maker, only_holding
-        self.invalidate()
-
-    def filterAcceptsRow(self, row: int, _: Index) -> bool:
-        """Whether a row is shown."""
-        one = self._source.rows[row]
-        return (
-            self._material in ("", one.material)
-            and self._maker in ("", one.maker)
-            and (one.holds or not self._only_holding)
-        )
 
 
 def _answer(ropes: Ropes) -> str:

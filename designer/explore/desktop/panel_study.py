@@ -9,11 +9,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import (
-    QCheckBox,
     QComboBox,
     QGridLayout,
-    QHBoxLayout,
-    QLabel,
     QLineEdit,
     QScrollArea,
     QSlider,
@@ -23,7 +20,15 @@ from PySide6.QtWidgets import (
 )
 
 from designer.explore.desktop.live_session import LiveSession
-from designer.explore.desktop.widgets import LineEntry, emptied
+from designer.explore.desktop.widgets import (
+    LineEntry,
+    beside,
+    check_box,
+    emptied,
+    label,
+    named,
+    result,
+)
 from designer.explore.session import Session
 from designer.report import format as fmt
 
@@ -51,18 +56,15 @@ class PanelStudy(QWidget):
         self.setMinimumWidth(240)
         self.rows: dict[str, FieldRow] = {}
         self._headings: dict[str, _Heading] = {}
-        self._find = LineEntry()
-        self._find.setObjectName("find field")
+        self._find = named(LineEntry(), "find field")
         self._find.setPlaceholderText("Find a number …")
         self._find.setClearButtonEnabled(True)
         self._find.textChanged.connect(self._filter)
-        self._changed_only = QCheckBox("changed")
-        self._changed_only.setObjectName("changed only")
-        self._changed_only.setToolTip("<p>Only what differs from the file.</p>")
-        self._changed_only.toggled.connect(self._filter)
-        above = QHBoxLayout()
-        above.addWidget(self._find, 1)
-        above.addWidget(self._changed_only)
+        self._changed_only = check_box(
+            "changed only", "changed", self._filter, "Only what differs from the file."
+        )
+        above = beside(self._find, self._changed_only)
+        above.setContentsMargins(8, 0, 8, 0)
         self._inside = QWidget()
         self._list = QVBoxLayout(self._inside)
         self._list.setContentsMargins(8, 4, 8, 8)
@@ -74,7 +76,6 @@ class PanelStudy(QWidget):
         area.setWidget(self._inside)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 6, 0, 0)
-        above.setContentsMargins(8, 0, 8, 0)
         rows.addLayout(above)
         rows.addWidget(area, 1)
         live.changed.connect(self._show_fields)
@@ -148,26 +149,26 @@ class FieldRow(QWidget):
         super().__init__()
         self.field, self._live = field, live
         self.is_changed = False
-        self._label = QLabel(field.label)
-        self._label.setToolTip(f"<p>{field.definition}</p><p><code>{field.path}</code></p>")
+        self._label = label(field.label, tip=f"{field.definition}</p><p><code>{field.path}</code>")
         self._label.setWordWrap(True)
-        self._back = QToolButton()
+        self._back = named(
+            QToolButton(),
+            f"put back {field.path}",
+            "Put this field alone back to what the file says.",
+        )
         self._back.setText("↺")
         self._back.setProperty("role", "put-back")
-        self._back.setObjectName(f"put back {field.path}")
-        self._back.setToolTip("<p>Put this field alone back to what the file says.</p>")
         self._back.setAccessibleName(f"Put back {field.label}")
         self._back.clicked.connect(self._put_back)
         policy = self._back.sizePolicy()
         policy.setRetainSizeWhenHidden(True)
         self._back.setSizePolicy(policy)
-        self._fault = QLabel()
-        self._fault.setObjectName(f"fault {field.path}")
-        self._fault.setProperty("role", "fault")
-        self._fault.setWordWrap(True)
-        self.entry = LineEntry()
-        self.choices = QComboBox()
-        self.slider = _Slider()
+        self._fault = result(f"fault {field.path}", "fault")
+        self.entry = named(LineEntry(), f"entry {field.path}")
+        self.choices = named(QComboBox(), f"choice {field.path}")
+        self.slider = named(_Slider(), f"slider {field.path}")
+        for widget in (self.entry, self.choices, self.slider):
+            widget.setAccessibleName(field.label)
         self._rest = QTimer(self, singleShot=True, interval=400)  # several steps of keys: one edit
         self._rest.timeout.connect(self._settle)
         grid = QGridLayout(self)
@@ -187,8 +188,6 @@ class FieldRow(QWidget):
         self._fault.hide()
 
     def _entry(self) -> QLineEdit:
-        self.entry.setObjectName(f"entry {self.field.path}")
-        self.entry.setAccessibleName(self.field.label)
         self.entry.setFixedWidth(104)
         self.entry.setAlignment(Qt.AlignmentFlag.AlignRight)
         self.entry.editingFinished.connect(self._entered)
@@ -196,8 +195,6 @@ class FieldRow(QWidget):
         return self.entry
 
     def _choices(self) -> QComboBox:
-        self.choices.setObjectName(f"choice {self.field.path}")
-        self.choices.setAccessibleName(self.field.label)
         self.choices.setFixedWidth(124)
         self.choices.addItems(list(self.field.choices))
         self.choices.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -205,8 +202,6 @@ class FieldRow(QWidget):
         return self.choices
 
     def _slider(self) -> _Slider:
-        self.slider.setObjectName(f"slider {self.field.path}")
-        self.slider.setAccessibleName(self.field.label)
         self.slider.valueChanged.connect(self._slid)
         self.slider.sliderReleased.connect(self._settle)
         return self.slider

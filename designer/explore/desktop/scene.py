@@ -16,9 +16,9 @@ from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 
 from designer.arrays import FloatArray
+from designer.explore.desktop import theme
 from designer.explore.desktop.overlay import ARROW_PX, HANDLE_PX, Legend, Overlay
 from designer.explore.desktop.scene_actors import Camera, SceneActors
-from designer.explore.desktop.theme import Theme
 from designer.report.figures.view import View
 
 _REST_MS = 300
@@ -78,11 +78,10 @@ class SceneView(QtInteractor):
         self._hover = QTimer(self, singleShot=True, interval=30)
         self._hover.timeout.connect(self._point)
 
-    def put_on(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        self.set_background(theme.base)
-        self.stage.put_on(theme)
-        self.overlay.theme = theme
+    def follow_theme(self) -> None:
+        """Take the colours of the theme."""
+        self.set_background(theme.current().base)
+        self.stage.follow_theme()
         self.redraw()
 
     # Drawing

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.explore.desktop import theme
 from designer.explore.desktop.actors import Body, Dots, Faces, Hit, Lines, MapSurface
 from designer.explore.desktop.painting import Painting
-from designer.explore.desktop.theme import LIGHT, Theme
 from designer.model.robot import Poses
 from designer.report.figures.overlay import ticks_between
 from designer.report.figures.scenes import base_outline_m
@@ -137,7 +137,6 @@ class SceneActors:
         self.edges = Lines(plotter, "platform edges", 1.6, before=4.0)
         self.mass = Dots(plotter, "load", 12.0, before=5.0)
         self.rows = Dots(plotter, "measured rows", 7.0, before=6.0)
-        self.theme = LIGHT
         self.names: tuple[str, ...] = ()
         self.is_planar = False
         self.plane_normal = np.array([0.0, 1.0, 0.0])
@@ -150,18 +149,18 @@ class SceneActors:
         """The surface of the region, and the slice."""
         return self.shell, self.slice
 
-    def put_on(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        self.theme = theme
+    def follow_theme(self) -> None:
+        """Take the colours of the theme."""
+        colours = theme.current()
         for surface in self.map_surfaces:
-            surface.put_on(theme)
-        colours: Mapping[str, list[Any]] = {
-            theme.border: [self.floor],
-            theme.muted: [self.region, self.base, self.posts, self.chords],
-            theme.cable: [self.cables, self.exits, self.mass, self.edges, self.rim],
-            theme.accent: [self.body],
+            surface.put_on(colours)
+        pieces_by_colour: Mapping[str, list[Any]] = {
+            colours.border: [self.floor],
+            colours.muted: [self.region, self.base, self.posts, self.chords],
+            colours.cable: [self.cables, self.exits, self.mass, self.edges, self.rim],
+            colours.accent: [self.body],
         }
-        for colour, pieces in colours.items():
+        for colour, pieces in pieces_by_colour.items():
             for piece in pieces:
                 piece.colour(colour)
 
@@ -222,7 +221,7 @@ class SceneActors:
         self._points_m = grids["points"].reshape(-1, 3) if "points" in grids else np.empty((0, 3))
         self.dots.put(self._points_m)
         if len(self._points_m) and answer is not None and painting is not None:
-            self.dots.paint(painting.colours(painting.of(answer, ["points"]), self.theme))
+            self.dots.paint(painting.colours(painting.of(answer, ["points"])))
 
     def put_rows(self, position_m: FloatArray, sizes: FloatArray, brightest: float) -> None:
         """Show measured rows (n,), coloured by how much is left of them, up to ``brightest``."""

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 )
 
 from designer.explore.desktop.settings import Settings
-from designer.explore.desktop.widgets import emptied
+from designer.explore.desktop.widgets import button, emptied, fill, label, named
 from designer.resources import example_file, example_names, example_summary
 
 _PICTURE_PX = (200, 125)
@@ -61,35 +61,32 @@ class StartPage(QScrollArea):
     def show_recent(self) -> None:
         """Show the studies that were open before."""
         emptied(self._recent)
-        self._recent.addWidget(_label("cdpr-designer", "title"))
-        self._recent.addWidget(_label("Which cable, how thick, and how sure is that?", "muted"))
+        sought = button("open", "Open a study …", self.asks_for_file.emit)
+        sought.setShortcut("Ctrl+O")
+        question = label("Which cable, how thick, and how sure is that?", "muted")
+        fill(self._recent, label("cdpr-designer", "title"), question)
         self._recent.addSpacing(12)
-        button = QPushButton("Open a study …")
-        button.setObjectName("open")
-        button.setShortcut("Ctrl+O")
-        button.clicked.connect(self.asks_for_file)
-        self._recent.addWidget(button)
+        self._recent.addWidget(sought)
         self._recent.addSpacing(12)
-        self._recent.addWidget(_label("Recent", "heading"))
+        self._recent.addWidget(label("Recent", "heading"))
         studies = self._settings.recent
         for path in studies:
             entry = _StudyButton(path.stem, str(path.parent))
-            entry.setObjectName(f"recent {path.stem}")
-            entry.setToolTip(str(path))
+            entry = named(entry, f"recent {path.stem}", str(path))
             entry.clicked.connect(lambda _=False, path=path: self.chosen.emit(path))
             self._recent.addWidget(entry)
         if not studies:
-            self._recent.addWidget(_label("Studies that you open stand here.", "muted"))
+            self._recent.addWidget(label("Studies that you open stand here.", "muted"))
         self._recent.addStretch(1)
 
     def _shipped(self) -> QVBoxLayout:
         column = QVBoxLayout()
-        column.addWidget(_label("Studies to start from", "heading"))
+        column.addWidget(label("Studies to start from", "heading"))
         grid = QGridLayout()
         grid.setSpacing(12)
         for number, name in enumerate(example_names()):
             entry = _StudyButton(name, example_summary(name), picture_file(name))
-            entry.setObjectName(f"example {name}")
+            entry = named(entry, f"example {name}")
             entry.clicked.connect(lambda _=False, name=name: self.chosen.emit(example_file(name)))
             grid.addWidget(entry, number // _COLUMNS, number % _COLUMNS)
         column.addLayout(grid)
@@ -110,8 +107,8 @@ class _StudyButton(QPushButton):
         rows.setContentsMargins(10, 10, 10, 10)
         if picture is not None:
             rows.addWidget(_picture(picture))
-        rows.addWidget(_label(name, "heading"))
-        text = _label(summary, "muted")
+        rows.addWidget(label(name, "heading"))
+        text = label(summary, "muted")
         text.setWordWrap(True)
         text.setAlignment(Qt.AlignmentFlag.AlignTop)
         rows.addWidget(text, 1)
@@ -133,10 +130,4 @@ def _picture(file: Path) -> QLabel:
         )
         fitted.setDevicePixelRatio(ratio)
         label.setPixmap(fitted)
-    return label
-
-
-def _label(text: str, role: str) -> QLabel:
-    label = QLabel(text)
-    label.setProperty("role", role)
     return label

@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QStatusBar, QToolButton, QWidget
 
 from designer.explore.desktop.live_session import LONG, NAMES, LiveSession
+from designer.explore.desktop.widgets import fill, named
 from designer.explore.requests import Long
 
 _MESSAGE_MS = 15_000
@@ -17,8 +18,7 @@ class StatusBar(QStatusBar):
     def __init__(self, live: LiveSession) -> None:
         super().__init__()
         self._live = live
-        self._busy, self.long = QLabel(), LongWork(live)
-        self._busy.setObjectName("busy")
+        self._busy, self.long = named(QLabel(), "busy"), LongWork(live)
         self.addPermanentWidget(self._busy)
         self.addPermanentWidget(self.long)
         live.busy_changed.connect(self._show_busy)
@@ -44,16 +44,13 @@ class LongWork(QWidget):
         self._bar = QProgressBar()
         self._bar.setFixedWidth(150)
         self._bar.setTextVisible(False)
-        cancel = QToolButton()
-        cancel.setObjectName("cancel")
+        cancel = named(QToolButton(), "cancel", "End this work (Ctrl+.)")
         cancel.setText("Cancel")
         cancel.setShortcut("Ctrl+.")
-        cancel.setToolTip("End this work (Ctrl+.)")
         cancel.clicked.connect(self._cancel)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 6, 0)
-        for widget in (self._task, self._bar, cancel):
-            row.addWidget(widget)
+        fill(row, self._task, self._bar, cancel)
         self.hide()
         live.begun.connect(self._begin)
         live.progressed.connect(self._progress)

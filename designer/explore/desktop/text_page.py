@@ -5,18 +5,17 @@ from __future__ import annotations
 from PySide6.QtCore import QRect, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QFontDatabase, QPainter, QPaintEvent, QResizeEvent, QTextCursor
 from PySide6.QtWidgets import (
-    QHBoxLayout,
-    QLabel,
     QListWidget,
     QListWidgetItem,
     QPlainTextEdit,
-    QPushButton,
     QSplitter,
     QVBoxLayout,
     QWidget,
 )
 
 from designer.explore.desktop.live_session import LiveSession
+from designer.explore.desktop.widgets import beside, button, label, named
+from designer.report import format as fmt
 
 _PAUSE_MS = 400
 """Nothing was typed for so long: the text is read."""
@@ -32,36 +31,23 @@ class TextPage(QWidget):
         super().__init__()
         self._live = live
         self.setObjectName("text page")
-        self.editor = _Editor()
-        self.editor.setObjectName("editor")
-        self.faults = QListWidget()
-        self.faults.setObjectName("faults")
+        self.editor, self.faults = named(_Editor(), "editor"), named(QListWidget(), "faults")
         self.faults.setWordWrap(True)
         self.faults.itemActivated.connect(self._go_to)
         self.faults.itemClicked.connect(self._go_to)
         self._pause = QTimer(self, singleShot=True, interval=_PAUSE_MS)
         self._pause.timeout.connect(self._write)
         self.editor.textChanged.connect(self._pause.start)
-        self._heading = QLabel()
-        self._heading.setProperty("role", "heading")
-        self._heading.setObjectName("number of faults")
-        self.leave = QPushButton("Show the scene")
-        self.leave.setObjectName("leave text")
-        self.leave.clicked.connect(self.asks_to_leave)
-        reload = QPushButton("Reload the file")
-        reload.setObjectName("reload text")
-        reload.clicked.connect(self.asks_to_reload)
-        above = QHBoxLayout()
-        above.addWidget(self._heading, 1)
-        above.addWidget(reload)
-        above.addWidget(self.leave)
+        self._heading = named(label("", "heading"), "number of faults")
+        self.leave = button("leave text", "Show the scene", self.asks_to_leave.emit)
+        reload = button("reload text", "Reload the file", self.asks_to_reload.emit)
         split = QSplitter(Qt.Orientation.Vertical)
         split.addWidget(self.editor)
         split.addWidget(self.faults)
         split.setStretchFactor(0, 4)
         split.setStretchFactor(1, 1)
         rows = QVBoxLayout(self)
-        rows.addLayout(above)
+        rows.addLayout(beside(self._heading, None, reload, self.leave))
         rows.addWidget(split, 1)
         live.changed.connect(self._show_text)
         live.flushing.connect(self._flush)
@@ -88,10 +74,8 @@ class TextPage(QWidget):
         self.faults.setVisible(bool(faults))
         self.editor.faulty = {fault.line for fault in faults if fault.line}
         self.editor.numbers.update()
-        number = len(faults)
-        self._heading.setText(
-            f"{number} fault{'s' if number > 1 else ''} in this study" if faults else "No faults"
-        )
+        count = fmt.plural(len(faults), "fault")
+        self._heading.setText(f"{count} in this study" if faults else "No faults")
         self.leave.setEnabled(session.study is not None)
 
     def _write(self) -> None:

@@ -77,8 +77,15 @@ def theme_of(choice: str) -> Theme:
     return DARK if is_dark else LIGHT
 
 
+def current() -> Theme:
+    """Return the theme that the application has on."""
+    app = QApplication.instance()
+    return DARK if app is not None and app.property("theme") == DARK.name else LIGHT
+
+
 def put_on(app: QApplication, theme: Theme) -> None:
     """Give the whole application the colours of a theme."""
+    app.setProperty("theme", theme.name)
     app.setPalette(_palette(theme))
     app.setStyleSheet(_sheet(theme))
 

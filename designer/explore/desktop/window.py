@@ -174,12 +174,10 @@ class Window(QMainWindow):
     def put_on(self, choice: str) -> None:
         """Take the colours of a theme, or those of the system."""
         self.settings.theme = choice
-        theme = themes.theme_of(choice)
         app = QApplication.instance()
         assert isinstance(app, QApplication)
-        themes.put_on(app, theme)
-        for part in (self.work, self.here, self.ropes, self.requirements, self.measured):
-            part.put_on(theme)
+        themes.put_on(app, themes.theme_of(choice))
+        self.work.follow_theme()
         self.menus.refresh()
 
     def _restore(self) -> None:

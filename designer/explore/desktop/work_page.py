@@ -9,22 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QStandardItemModel
-from PySide6.QtWidgets import (
-    QCheckBox,
-    QComboBox,
-    QHBoxLayout,
-    QLabel,
-    QSlider,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QSlider, QVBoxLayout, QWidget
 
 from designer.explore.desktop.actors import Hit
 from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.painting import Painting
 from designer.explore.desktop.scene import SceneView
-from designer.explore.desktop.theme import LIGHT, Theme
-from designer.explore.desktop.widgets import Notice
+from designer.explore.desktop.widgets import Notice, beside, check_box, fill, named
 from designer.explore.quantities import BY_KEY, QUANTITIES, category_labels
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
@@ -57,7 +48,6 @@ class WorkPage(QWidget):
         self.scene = SceneView(self)
         self.map: MapAnswer | None = None
         self.painting: Painting | None = None
-        self._theme: Theme = LIGHT
         self._pose_answer: Here | None = None
         self._study: Study | None = None
         self._place = np.zeros(6)
@@ -71,13 +61,15 @@ class WorkPage(QWidget):
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 0, 0, 0)
         rows.setSpacing(0)
-        rows.addWidget(self._bar())
-        rows.addWidget(self._notice)
+        self.height_slider = self._slice_slider()
+        fill(rows, self._bar(), self._notice)
         middle = QHBoxLayout()
         middle.setSpacing(0)
         middle.addWidget(self.scene, 1)
-        middle.addWidget(self._slice_slider())
+        middle.addWidget(self.height_slider)
         rows.addLayout(middle, 1)
+        for box in (self.surface, self.slice):
+            box.setChecked(True)
         self._connect()
 
     def _connect(self) -> None:
@@ -96,65 +88,61 @@ class WorkPage(QWidget):
         live.listen(self._show_worst, "worst")
         live.listen(self._take_residuals, "residuals")
 
-    def _bar(self) -> QWidget:
-        bar = QWidget()
-        row = QHBoxLayout(bar)
-        row.setContentsMargins(8, 4, 8, 4)
-        self.quantity = QComboBox()
-        self.quantity.setObjectName("quantity")
+    def _bar(self) -> QHBoxLayout:
+        self.quantity = named(QComboBox(), "quantity")
         self.quantity.setAccessibleName("What the map is coloured by")
         for number, quantity in enumerate(QUANTITIES):
             self.quantity.addItem(quantity.title, quantity.key)
             self.quantity.setItemData(number, quantity.definition, Qt.ItemDataRole.ToolTipRole)
         self.quantity.currentIndexChanged.connect(self._quantity_chosen)
-        self.surface = QCheckBox("Surface")
-        self.surface.setObjectName("show surface")
-        self.surface.setToolTip("<p>The outside of the region, seen from within.</p>")
-        self.slice = QCheckBox("Slice")
-        self.slice.setObjectName("show slice")
-        self.slice.setToolTip("<p>A level slice through the region; the slider moves it.</p>")
-        for box in (self.surface, self.slice):
-            box.setChecked(True)
-            box.toggled.connect(self._show_surfaces)
-        self.exaggeration = QComboBox()
-        self.exaggeration.setObjectName("sag exaggeration")
-        self.exaggeration.setToolTip(
-            "<p>Draws the cables as many times farther from the straight line between their ends "
-            "as they are; numbers stay what they are.</p>"
+        self.surface = check_box(
+            "show surface",
+            "Surface",
+            self._show_surfaces,
+            "The outside of the region, seen from within.",
+        )
+        self.slice = check_box(
+            "show slice",
+            "Slice",
+            self._show_surfaces,
+            "A level slice through the region; the slider moves it.",
+        )
+        self.exaggeration = named(
+            QComboBox(),
+            "sag exaggeration",
+            "Draws the cables as many times farther from the straight line between their ends as "
+            "they are; numbers stay what they are.",
         )
         for factor in FACTORS:
             self.exaggeration.addItem("true sag" if factor == 1 else f"sag × {factor}", factor)
         self.exaggeration.currentIndexChanged.connect(self._show_place)
-        self.holds_scale = QCheckBox("Hold the scale")
-        self.holds_scale.setObjectName("hold scale")
-        self.holds_scale.setToolTip(
-            "<p>The colours keep their meaning while the study changes.</p>"
+        self.holds_scale = check_box(
+            "hold scale",
+            "Hold the scale",
+            self._hold,
+            "The colours keep their meaning while the study changes.",
         )
-        self.holds_scale.toggled.connect(self._hold)
-        row.addWidget(QLabel("Colour by"))
-        row.addWidget(self.quantity)
-        row.addSpacing(8)
-        for widget in (self.holds_scale, self.surface, self.slice, self.exaggeration):
-            row.addWidget(widget)
-        row.addStretch(1)
+        bar = beside("Colour by", self.quantity)
+        bar.setContentsMargins(8, 4, 8, 4)
+        bar.addSpacing(8)
+        fill(bar, self.holds_scale, self.surface, self.slice, self.exaggeration, None)
         return bar
 
     def _slice_slider(self) -> QSlider:
-        self.height_slider = QSlider(Qt.Orientation.Vertical)
-        self.height_slider.setObjectName("slice height")
-        self.height_slider.setAccessibleName("Height of the slice")
-        self.height_slider.setRange(0, 100)
-        self.height_slider.setValue(50)
-        self.height_slider.valueChanged.connect(self._slice_slid)
-        self.height_slider.sliderReleased.connect(
-            lambda: self._live.move_slice(self.height_slider.value() / 100.0, False)
-        )
-        return self.height_slider
+        slider = named(QSlider(Qt.Orientation.Vertical), "slice height")
+        slider.setAccessibleName("Height of the slice")
+        slider.setRange(0, 100)
+        slider.setValue(50)
+        slider.valueChanged.connect(lambda: self._move_slice(slider.isSliderDown()))
+        slider.sliderReleased.connect(lambda: self._move_slice(False))
+        return slider
 
-    def put_on(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        self._theme = theme
-        self.scene.put_on(theme)
+    def _move_slice(self, moving: bool) -> None:
+        self._live.move_slice(self.height_slider.value() / 100.0, moving)
+
+    def follow_theme(self) -> None:
+        """Take the colours of the theme."""
+        self.scene.follow_theme()
         self._show_map()
 
     # What is shown
@@ -211,7 +199,7 @@ class WorkPage(QWidget):
             self.painting = None
             self.holds_scale.setChecked(False)
             self.scene.stage.put_map(None, None)
-            self.scene.colour_legend.show_meaning("", None, (), self._theme)
+            self.scene.colour_legend.show_meaning("", None, ())
         self._show_map()
 
     def _show_age(self) -> None:
@@ -272,12 +260,10 @@ class WorkPage(QWidget):
         painting = Painting.over(answer, quantity, self._fixed_steps)
         self.painting = replace(painting, is_old=self._is_old)
         self.scene.stage.put_map(answer, self.painting)
-        keys = self.painting.keys(answer, self._theme)
         self.scene.colour_legend.show_meaning(
             self.painting.title,
             self.painting.steps,
-            keys,
-            self._theme,
+            self.painting.keys(answer),
             self.painting.note(answer),
             is_old=self._is_old,
         )
@@ -308,9 +294,6 @@ class WorkPage(QWidget):
     def _hold(self, is_held: bool) -> None:
         self._fixed_steps = self.painting.steps if is_held and self.painting is not None else None
         self._show_map()
-
-    def _slice_slid(self, value: int) -> None:
-        self._live.move_slice(value / 100.0, self.height_slider.isSliderDown())
 
     # Where one looks from
 
