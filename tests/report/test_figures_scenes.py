@@ -25,7 +25,7 @@ from designer.analysis.maps import WorkspaceMaps
 from designer.analysis.pose import analyse_pose
 from designer.errors import MissingLibraryError
 from designer.model.prism import Prism
-from designer.report.figures import opengl, overlay, palette, stage
+from designer.report.figures import opengl, overlay, palette, parts, stage
 from designer.report.figures.colours import DIAMETER, RATIO, TENSION
 from designer.report.figures.interactive import workspace_scene_html
 from designer.report.figures.scenes import (
@@ -125,9 +125,9 @@ _SPECKS = ("outside", "unheld", "all_left_out", "speck")
 
 class TestOverlay:
     def test_ticks_are_round_and_inside(self) -> None:
-        assert overlay.ticks_between(0.0, 433.01).tolist() == [0.0, 100.0, 200.0, 300.0, 400.0]
-        assert overlay.ticks_between(-200.0, 0.0, 4).tolist() == [-200, -150, -100, -50, 0]
-        assert overlay.ticks_between(3.0, 3.0).tolist() == [3.0]
+        assert parts.ticks_between(0.0, 433.01).tolist() == [0.0, 100.0, 200.0, 300.0, 400.0]
+        assert parts.ticks_between(-200.0, 0.0, 4).tolist() == [-200, -150, -100, -50, 0]
+        assert parts.ticks_between(3.0, 3.0).tolist() == [3.0]
 
     def test_leftmost_corner(self) -> None:
         bounds = np.array([[0.0, 0.0, 0.0], [10.0, 10.0, 5.0]])
@@ -212,12 +212,12 @@ class TestStage:
 
     def test_hull_of_a_platform(self) -> None:
         corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
-        assert len(stage.hull_faces(corners)) == 4
+        assert len(parts.hull_faces(corners)) == 4
         flat = np.array([[0, 0, 2], [1, 0, 2], [1, 1, 2], [0, 1, 2], [0.5, 0.5, 2]], dtype=float)
-        assert len(stage.hull_faces(flat)) == 2
-        assert len(stage.hull_faces(SIX.attachments_m)) == 1
-        assert len(stage.hull_faces(flat[:, [0, 0, 0]])) == 0
-        assert len(stage.hull_faces(np.zeros((6, 3)))) == 0
+        assert len(parts.hull_faces(flat)) == 2
+        assert len(parts.hull_faces(SIX.attachments_m)) == 1
+        assert len(parts.hull_faces(flat[:, [0, 0, 0]])) == 0
+        assert len(parts.hull_faces(np.zeros((6, 3)))) == 0
 
     def test_edges_are_those_of_the_opened_region(self) -> None:
         maps = maps_of("served")

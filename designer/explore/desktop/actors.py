@@ -17,12 +17,11 @@ from numpy.typing import NDArray
 from designer.arrays import FloatArray
 from designer.explore.desktop.painting import Painting, Values, rgb
 from designer.explore.desktop.theme import Theme
+from designer.report.figures.parts import Faces, grid_faces
 
 if TYPE_CHECKING:
     from pyvista import PolyData
     from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
-
-Faces = NDArray[np.int64]
 
 
 class Piece:
@@ -207,7 +206,7 @@ class MapSurface:
         self._grids, self._points_m, self._locator = sizes, points, None
         starts = np.cumsum([0, *(size for _, size in sizes)])
         faces = [
-            start + _quads(*grid.shape[:2])
+            start + grid_faces(*grid.shape[:2])
             for start, grid in zip(starts[:-1], grids_m.values(), strict=True)
         ]
         self._faces = np.concatenate([np.empty((0, 4), dtype=np.int64), *faces])
@@ -307,12 +306,6 @@ def _put_faces(mesh: Any, faces: Faces) -> None:
     mesh.verts = np.empty(0, dtype=np.int64)
     sides = np.full((len(faces), 1), 4, dtype=np.int64)
     mesh.faces = np.hstack([sides, faces]).ravel()
-
-
-def _quads(rows: int, columns: int) -> Faces:
-    number = np.arange(rows * columns).reshape(rows, columns)
-    corners = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
-    return np.stack([corner.ravel() for corner in corners], axis=1)
 
 
 def _outward(points_m: FloatArray, faces: Faces) -> Faces:

@@ -6,7 +6,7 @@ frame of the scene.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
@@ -16,9 +16,9 @@ from PySide6.QtWidgets import QWidget
 from designer.arrays import FloatArray
 from designer.explore.desktop import theme
 from designer.explore.desktop.painting import Key
-from designer.explore.desktop.scene_actors import Camera
 from designer.report import format as fmt
 from designer.report.figures.colours import Steps
+from designer.report.figures.view import View
 
 HANDLE_PX = 13.0
 ARROW_PX = 34.0
@@ -27,10 +27,10 @@ ARROW_PX = 34.0
 class Overlay(QWidget):
     """Lies over the scene and lets the mouse through."""
 
-    def __init__(self, parent: QWidget, camera: Camera) -> None:
+    def __init__(self, parent: QWidget, view: Callable[[], View]) -> None:
         super().__init__(parent)
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self._camera = camera
+        self._view = view
         self.names: list[tuple[str, FloatArray]] = []
         self.platform_m: FloatArray | None = None
         self.worst: tuple[FloatArray, str] | None = None
@@ -49,7 +49,7 @@ class Overlay(QWidget):
         """Return where the handle of the platform is, and the tip of its upward arrow [px]."""
         if self.platform_m is None:
             return None
-        centre = self._camera.pixels(self.platform_m)
+        centre = self._view().pixels(self.platform_m)
         return centre, centre - np.array([0.0, ARROW_PX])
 
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -68,7 +68,7 @@ class Overlay(QWidget):
     def _draw_names(self, painter: QPainter) -> None:
         painter.setPen(QColor(theme.current().muted))
         for name, place in self.names:
-            x, y = self._camera.pixels(place)
+            x, y = self._view().pixels(place)
             width = painter.fontMetrics().horizontalAdvance(name)
             has_room = x + 6 + width < self.width() - self.legend_px
             painter.drawText(QPointF(x + 6 if has_room else x - 6 - width, y - 6), name)
@@ -77,7 +77,7 @@ class Overlay(QWidget):
         if self.worst is None:
             return
         place, text = self.worst
-        x, y = self._camera.pixels(place)
+        x, y = self._view().pixels(place)
         marked = theme.current().muted if self.is_worst_old else theme.current().warning
         for width, colour in ((5.0, theme.current().base), (2.0, marked)):
             painter.setPen(QPen(QColor(colour), width))

@@ -119,6 +119,7 @@ class PanelHere(QWidget):
         self.table.setFont(small)
         head = self.table.horizontalHeader()
         head.setMinimumSectionSize(18)
+        head.setStretchLastSection(False)
         head.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         head.setSectionResizeMode(head.count() - 1, QHeaderView.ResizeMode.Stretch)
         keep = button(

@@ -22,7 +22,7 @@ from designer.explore.desktop.widgets import (
     result,
 )
 from designer.report import format as fmt
-from designer.report.figures.overlay import ticks_between
+from designer.report.figures.parts import ticks_between
 
 if TYPE_CHECKING:
     from designer.explore.measurements import DiagnosisAnswer, Residuals

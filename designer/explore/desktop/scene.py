@@ -7,6 +7,7 @@ when nothing moves any more, since that is eight times the work where there is n
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from pyvistaqt import QtInteractor
 from designer.arrays import FloatArray
 from designer.explore.desktop import theme
 from designer.explore.desktop.overlay import ARROW_PX, HANDLE_PX, Legend, Overlay
-from designer.explore.desktop.scene_actors import Camera, SceneActors
+from designer.explore.desktop.scene_actors import SceneActors
 from designer.report.figures.view import View
 
 _REST_MS = 300
@@ -63,9 +64,9 @@ class SceneView(QtInteractor):
         self._Iren.EnableRenderOff()  # a frame is drawn where Qt asks for a picture, not before
         self.frames = 0
         self.frame_s = 0.0
-        self.camera_ = Camera(View(-1.0, 0.5, np.zeros(3), 1.0), 1.0, 1.0)
+        self.view = View(-1.0, 0.5, np.zeros(3), 1.0)
         self.stage = SceneActors(self)
-        self.overlay = Overlay(self, self.camera_)
+        self.overlay = Overlay(self, lambda: self.view)
         self.colour_legend = Legend(self)
         self.can_turn = False
         self.is_turned = False  # Whether the user has chosen where to look from
@@ -97,7 +98,7 @@ class SceneView(QtInteractor):
     def paintGL(self) -> None:
         """Draw one frame."""
         start = time.perf_counter()
-        self.camera_.aim(self)
+        self.view.aim(self.renderer)
         self._Iren.EnableRenderOn()
         super().paintGL()  # type: ignore[no-untyped-call]
         self._Iren.EnableRenderOff()
@@ -118,8 +119,9 @@ class SceneView(QtInteractor):
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Keep overlay, legend and camera at the size of the scene."""
         super().resizeEvent(event)
-        self.camera_.width_px = max(self.width(), 1)
-        self.camera_.height_px = max(self.height(), 1)
+        self.view = replace(
+            self.view, width_px=max(self.width(), 1), height_px=max(self.height(), 1)
+        )
         self.overlay.setGeometry(self.rect())
         self.place_legend()
         self.resized.emit()
@@ -158,13 +160,9 @@ class SceneView(QtInteractor):
             buttons & Qt.MouseButton.LeftButton
             and not modifiers & Qt.KeyboardModifier.ShiftModifier
         ):
-            self.is_turned = True
-            self.camera_.turn(step.x(), step.y())
-            self.redraw()
+            self._see(self.view.turned(step.x(), step.y()))
         else:
-            self.is_turned = True
-            self.camera_.shift(step.x(), step.y())
-            self.redraw()
+            self._see(self.view.shifted(step.x(), step.y()))
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """End a drag; where the mouse has hardly moved, take the platform to what is under it."""
@@ -185,9 +183,12 @@ class SceneView(QtInteractor):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Zoom at the mouse."""
-        self.is_turned = True
         factor = 1.0015 ** event.angleDelta().y()
-        self.camera_.zoom(factor, event.position().x(), event.position().y())
+        self._see(self.view.zoomed(factor, event.position().x(), event.position().y()))
+
+    def _see(self, view: View) -> None:
+        """Look from where the user wants to."""
+        self.is_turned, self.view = True, view
         self.redraw()
 
     def leaveEvent(self, event: Any) -> None:
@@ -225,7 +226,7 @@ class SceneView(QtInteractor):
     def _along_axes(self, step: FloatArray) -> FloatArray:
         """A step to the right, away and up, along the nearest axes of the frame."""
         right, away, up = step
-        view = self.camera_.view
+        view = self.view
         level_step = right * view.right[:2] - away * view.toward_camera[:2] / max(
             float(np.linalg.norm(view.toward_camera[:2])), 1e-9
         )
@@ -249,15 +250,15 @@ class SceneView(QtInteractor):
 
     def _dragged_to(self, place: QPointF) -> FloatArray | None:
         """Where in the platform's level, or on the vertical through it, the mouse is."""
-        platform, view = self.overlay.platform_m, self.camera_.view
+        platform, view = self.overlay.platform_m, self.view
         assert platform is not None
         if self._grip == "level" and not self.stage.is_planar:
-            return self.camera_.on_plane(place.x(), place.y(), platform, np.array([0.0, 0.0, 1.0]))
+            return view.on_plane(place.x(), place.y(), platform, np.array([0.0, 0.0, 1.0]))
         if self._grip == "level":
-            return self.camera_.on_plane(place.x(), place.y(), platform, self.stage.plane_normal)
+            return view.on_plane(place.x(), place.y(), platform, self.stage.plane_normal)
         facing = np.append(view.toward_camera[:2], 0.0)
         facing = facing / max(float(np.linalg.norm(facing)), 1e-9)
-        under = self.camera_.on_plane(place.x(), place.y(), platform, facing)
+        under = view.on_plane(place.x(), place.y(), platform, facing)
         return None if under is None else np.array([*platform[:2], under[2]])
 
     def _drag_platform(self, place: QPointF, moving: bool) -> None:
@@ -268,12 +269,9 @@ class SceneView(QtInteractor):
     # What the mouse is over
 
     def _hit(self, place: QPointF) -> Any:
-        centre = self.camera_.point(place.x(), place.y())
-        far = (self.camera_.reach_m + 20.0 * self.camera_.view.half_height_m) * (
-            self.camera_.view.toward_camera
-        )
+        centre, far = self.view.point(place.x(), place.y()), self.view.to_camera_m
         pixel = np.array([place.x(), place.y()])
-        return self.stage.hit(centre + far, centre - far, pixel, self.camera_)
+        return self.stage.hit(centre + far, centre - far, pixel, self.view)
 
     def _point(self) -> None:
         if self._pressed is None:

@@ -1,115 +1,30 @@
-"""All actors of the scene, each made once and filled from what was answered; and its camera.
-
-The camera is the parallel view of the report's pictures, to be turned by hand.
-"""
+"""All actors of the scene, each made once and filled from what was answered."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.explore.desktop import theme
-from designer.explore.desktop.actors import Body, Dots, Faces, Hit, Lines, MapSurface
+from designer.explore.desktop.actors import Body, Dots, Hit, Lines, MapSurface
 from designer.explore.desktop.painting import Painting
 from designer.model.robot import Poses
-from designer.report.figures.overlay import ticks_between
-from designer.report.figures.scenes import base_outline_m
-from designer.report.figures.stage import hull_faces
-from designer.report.figures.view import View, fitting
+from designer.report.figures.parts import (
+    base_outline_m,
+    floor_m,
+    hull_edges,
+    hull_faces,
+    posts_m,
+)
+from designer.report.figures.view import View
 
 if TYPE_CHECKING:
     from designer.explore.here import Here
     from designer.explore.map import MapAnswer
     from designer.study import Study
-
-_STEEPEST_RAD = np.radians(89.0)
-"""At the vertical itself the picture would have no upward direction."""
-_LARGEST_ZOOM = 1e4
-"""Half the height of the picture at most [m]: no robot is found again beyond that."""
-
-
-@dataclass(slots=True)
-class Camera:
-    """A view onto a widget of some size [px]; x to the right and y downward from its corner."""
-
-    view: View
-    width_px: float
-    height_px: float
-    reach_m: float = 1.0  # Size of all that is on the stage, none of which lies behind the camera
-
-    def fit(
-        self, points_m: FloatArray, azimuth_rad: float, elevation_rad: float, right_px: float
-    ) -> None:
-        """See all points (n, 3) from this side, clear of a strip at the right."""
-        frame = (0.05, 0.97 - right_px / self.width_px, 0.08, 0.92)
-        aspect = self.width_px / self.height_px
-        self.view = fitting(points_m, azimuth_rad, elevation_rad, frame, aspect)
-        self.reach_m = float(np.linalg.norm(np.ptp(points_m, axis=0)))
-
-    @property
-    def pixels_per_m(self) -> float:
-        """Pixels per metre across the line of sight."""
-        return 0.5 * self.height_px / self.view.half_height_m
-
-    def pixels(self, points_m: FloatArray) -> FloatArray:
-        """Return where points (..., 3) land (..., 2) [px]."""
-        offset = (np.asarray(points_m) - self.view.centre_m) * self.pixels_per_m
-        right = 0.5 * self.width_px + offset @ self.view.right
-        return np.stack([right, 0.5 * self.height_px - offset @ self.view.up], axis=-1)
-
-    def point(self, x_px: float, y_px: float) -> FloatArray:
-        """Return the point (3,) behind a pixel, at the depth of the centre [m]."""
-        right = (x_px - 0.5 * self.width_px) / self.pixels_per_m
-        up = (0.5 * self.height_px - y_px) / self.pixels_per_m
-        return np.asarray(self.view.centre_m + right * self.view.right + up * self.view.up)
-
-    def on_plane(
-        self, x_px: float, y_px: float, through_m: FloatArray, normal: FloatArray
-    ) -> FloatArray | None:
-        """Return the point (3,) of a plane behind a pixel; None where it is seen from its edge."""
-        along = self.view.toward_camera
-        steepness = float(along @ normal)
-        if abs(steepness) < 0.02:
-            return None
-        start = self.point(x_px, y_px)
-        return np.asarray(start + along * float((through_m - start) @ normal) / steepness)
-
-    def turn(self, right_px: float, down_px: float) -> None:
-        """Turn about the vertical and lift, as a drag over so many pixels asks for."""
-        azimuth = self.view.azimuth_rad - right_px * 0.008
-        elevation = self.view.elevation_rad + down_px * 0.008
-        clipped = float(np.clip(elevation, -_STEEPEST_RAD, _STEEPEST_RAD))
-        self.view = replace(self.view, azimuth_rad=azimuth, elevation_rad=clipped)
-
-    def shift(self, right_px: float, down_px: float) -> None:
-        """Move the picture along with a drag."""
-        offset = -right_px * self.view.right + down_px * self.view.up
-        centre = self.view.centre_m + offset / self.pixels_per_m
-        self.view = replace(self.view, centre_m=centre)
-
-    def zoom(self, factor: float, x_px: float, y_px: float) -> None:
-        """Bring the picture nearer; what is behind this pixel stays there."""
-        anchor_m = self.point(x_px, y_px)
-        half = float(np.clip(self.view.half_height_m / factor, 1e-3, _LARGEST_ZOOM))
-        self.view = replace(self.view, half_height_m=half)
-        centre = self.view.centre_m + anchor_m - self.point(x_px, y_px)
-        self.view = replace(self.view, centre_m=centre)
-
-    def aim(self, plotter: Any) -> None:
-        """Point the camera of a plotter."""
-        camera, view = plotter.camera, self.view
-        far = 20.0 * view.half_height_m + 2.0 * self.reach_m
-        camera.position = tuple(view.centre_m + far * view.toward_camera)
-        camera.focal_point = tuple(view.centre_m)
-        camera.up = (0.0, 0.0, 1.0)
-        camera.parallel_projection = True
-        camera.parallel_scale = view.half_height_m
-        plotter.renderer.ResetCameraClippingRange()
-
 
 _NEAR_PX = 10.0
 """As far as a hand with a mouse misses a dot."""
@@ -142,6 +57,7 @@ class SceneActors:
         self.plane_normal = np.array([0.0, 1.0, 0.0])
         self.bounds_m = np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
         self._faces = np.empty((0, 3), dtype=np.int64)
+        self._edges = np.empty((0, 2), dtype=np.int64)
         self._points_m = np.empty((0, 3))
 
     @property
@@ -181,13 +97,14 @@ class SceneActors:
         around = np.concatenate(everything)
         self.bounds_m = np.array([around.min(axis=0), around.max(axis=0)])
         # A little below, so that its lines do not shine through the lowest face of the region.
-        floor = self.bounds_m[0, 2] - _BELOW * float(np.ptp(self.bounds_m, axis=0).max())
-        self.floor.put(_floor_m(self.bounds_m, floor))
+        below = _BELOW * float(np.ptp(self.bounds_m, axis=0).max())
+        self.floor.put(floor_m(self.bounds_m, below))
         self.region.put(edges)
         self.base.put([base_outline_m(robot)])
-        self.posts.put(np.stack([points, points * [1, 1, 0] + [0, 0, floor]], axis=1))
+        self.posts.put(posts_m(points, self.bounds_m[0, 2] - below))
         self.exits.put(points)
         self._faces = hull_faces(robot.attachments_m)
+        self._edges = hull_edges(robot.attachments_m, self._faces)
 
     def put_place(
         self, study: Study, place: FloatArray, answer: Here | None, factor: float
@@ -204,7 +121,7 @@ class SceneActors:
             self.edges.put([] if study.robot.is_point_mass else [ends])
         else:
             self.body.put(ends, self._faces)
-            self.edges.put(_rims(ends, self._faces))
+            self.edges.put(ends[self._edges])
         self.mass.put(pose.position_m[None])
 
     def put_map(self, answer: MapAnswer | None, painting: Painting | None) -> None:
@@ -234,11 +151,11 @@ class SceneActors:
             self.rows.paint(np.round(255.0 * table(share)[:, :3]).astype(np.uint8))
 
     def hit(
-        self, start_m: FloatArray, end_m: FloatArray, pixel: FloatArray, camera: Camera
+        self, start_m: FloatArray, end_m: FloatArray, pixel: FloatArray, view: View
     ) -> Hit | None:
         """Return what of the map a line of sight meets first."""
         if len(self._points_m):
-            away = np.linalg.norm(camera.pixels(self._points_m) - pixel, axis=1)
+            away = np.linalg.norm(view.pixels(self._points_m) - pixel, axis=1)
             number = int(np.argmin(away))
             is_near = away[number] <= _NEAR_PX
             return Hit(self._points_m[number], "points", number) if is_near else None
@@ -255,26 +172,3 @@ class SceneActors:
         """Return the corners of the box that the camera shall see (8, 3) [m]."""
         low, high = self.bounds_m
         return np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
-
-
-def _floor_m(bounds_m: FloatArray, floor_m: float) -> list[FloatArray]:
-    """A grid of round numbers on the floor, and its rim."""
-    low, high = bounds_m
-    lines = []
-    for axis, across in ((0, 1), (1, 0)):
-        for at in [low[axis], *ticks_between(low[axis], high[axis]), high[axis]]:
-            line = np.full((2, 3), floor_m)
-            line[:, axis] = at
-            line[:, across] = low[across], high[across]
-            lines.append(line)
-    return lines
-
-
-def _rims(points_m: FloatArray, faces: Faces) -> list[FloatArray]:
-    """Edges between faces (n, 3) that do not lie in one plane, each (2, 3) [m]."""
-    import pyvista
-
-    hull = pyvista.PolyData.from_regular_faces(points_m, faces)
-    edges = hull.extract_feature_edges(feature_angle=20.0)
-    ends = edges.lines.reshape(-1, 3)[:, 1:] if edges.n_cells else np.empty((0, 2), dtype=int)
-    return [np.asarray(edges.points[pair], dtype=np.float64) for pair in ends]

@@ -21,7 +21,7 @@ from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.figures import canvas
 from designer.report.figures.colours import Steps
-from designer.report.figures.view import clear_azimuth_rad, facing_azimuth_rad
+from designer.report.figures.view import clear_azimuth_rad, facing_azimuth_rad, fitting
 
 if TYPE_CHECKING:
     from designer.explore.here import Here
@@ -124,6 +124,7 @@ class WorkPage(QWidget):
         )
         bar = beside("Colour by", self.quantity)
         bar.setContentsMargins(8, 4, 8, 4)
+        bar.setSpacing(6)
         bar.addSpacing(8)
         fill(bar, self.holds_scale, self.surface, self.slice, self.exaggeration, None)
         return bar
@@ -307,8 +308,12 @@ class WorkPage(QWidget):
         azimuth, elevation = self._home(study)
         if view in sides:
             azimuth, elevation = (float(angle) for angle in np.radians(sides[view]))
-        legend_px = self.scene.colour_legend.sizeHint().width()
-        self.scene.camera_.fit(stage.everything_m(), azimuth, elevation, legend_px)
+        # clear of the legend at the right
+        width, height = max(self.scene.width(), 1), max(self.scene.height(), 1)
+        right = 0.97 - self.scene.colour_legend.sizeHint().width() / width
+        frame = (0.05, right, 0.08, 0.92)
+        corners = stage.everything_m()
+        self.scene.view = fitting(corners, azimuth, elevation, frame, (width, height))
         self.scene.redraw()
 
     def _look_again(self) -> None:

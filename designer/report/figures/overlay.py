@@ -19,6 +19,7 @@ from designer.arrays import FloatArray
 from designer.report import format as fmt
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
+from designer.report.figures.parts import floor_corners, floor_m, ticks_between
 from designer.report.figures.stage import Image
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
 
@@ -173,17 +174,8 @@ def _write(
 
 def floor_lines(view: View, bounds_m: FloatArray) -> list[FloatArray]:
     """Return the grid on the floor of a box (2, 3) and its upright at the left, each (2, 3) [m]."""
-    low, high = bounds_m
-    lines = []
-    for axis, across in ((0, 1), (1, 0)):
-        for at in [low[axis], *ticks_between(low[axis], high[axis]), high[axis]]:
-            line = np.full((2, 3), low[2])
-            line[:, axis] = at
-            line[:, across] = low[across], high[across]
-            lines.append(line)
     corner = leftmost_corner(view, bounds_m)
-    lines.append(np.array([[*corner, low[2]], [*corner, high[2]]]))
-    return lines
+    return [*floor_m(bounds_m), np.array([[*corner, z] for z in bounds_m[:, 2]])]
 
 
 def box_ticks(view: View, bounds_m: FloatArray) -> list[tuple[FloatArray, str]]:
@@ -222,22 +214,6 @@ def leftmost_corner(view: View, bounds_m: FloatArray) -> FloatArray:
     """Return x and y of the upright edge of a box that is leftmost in the picture (2,) [m]."""
     corners = floor_corners(bounds_m)
     return np.asarray(corners[np.argmin(view.pixels(corners)[:, 0]), :2])
-
-
-def floor_corners(bounds_m: FloatArray) -> FloatArray:
-    """Return the four lower corners (4, 3) of a box (2, 3) [m]."""
-    return np.array([*product(*bounds_m[:, :2].T, bounds_m[:1, 2])])
-
-
-def ticks_between(low: float, high: float, most: int = 5) -> FloatArray:
-    """Return round numbers from low to high."""
-    from matplotlib.ticker import MaxNLocator
-
-    if not high > low:
-        return np.array([low])
-    ticks = np.asarray(MaxNLocator(nbins=most, steps=[1, 2, 5, 10]).tick_values(low, high))
-    slack = 1e-9 * (high - low)
-    return ticks[(ticks >= low - slack) & (ticks <= high + slack)]
 
 
 def write_clear(

@@ -15,12 +15,12 @@ from designer.analysis.field import body_lines_m, cable_curves_m, chords_m, larg
 from designer.analysis.layers import Layers, layers_of
 from designer.analysis.maps import WorkspaceMaps
 from designer.arrays import FloatArray
-from designer.model.robot import Robot
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.figures import canvas, overlay, palette
 from designer.report.figures.canvas import Style
 from designer.report.figures.colours import DIAMETER, MapQuantity, Steps, steps_for
+from designer.report.figures.parts import base_outline_m, floor_corners
 from designer.report.figures.stage import BORDER_OPACITY, Image, SceneCanvas
 from designer.report.figures.view import (
     Frame,
@@ -72,7 +72,7 @@ def robot_scene(
     else:
         lines = np.concatenate([chords_m(statics), np.stack([base[:-1], base[1:]], axis=1)])
         azimuth = clear_azimuth_rad(lines, _ROBOT_ELEVATION_RAD)
-    everything = np.concatenate([overlay.floor_corners(bounds), points])
+    everything = np.concatenate([floor_corners(bounds), points])
     stage = SceneCanvas(
         fitting(everything, azimuth, _ROBOT_ELEVATION_RAD, (0.075, 0.95, 0.13, 0.90))
     )
@@ -126,22 +126,6 @@ def _taken(stage: SceneCanvas, bounds: FloatArray, letters: float = 1.0) -> tupl
     if letters == 1.0:
         overlay.box_axes(axes, stage.view, bounds)
     return figure, axes
-
-
-def base_outline_m(robot: Robot) -> FloatArray:
-    """Return the exit points on the hull in plan, the first one again at the end (n, 3) [m].
-
-    In the plane of a planar robot; where the points lie on a line, all of them in their order.
-    """
-    from scipy.spatial import ConvexHull, QhullError
-
-    points = robot.exit_points_m
-    flat = (points @ robot.upright.T)[:, [0, 2]] if robot.is_planar else points[:, :2]
-    try:
-        corners = ConvexHull(flat).vertices
-    except QhullError:
-        return points
-    return np.asarray(points[[*corners, corners[0]]])
 
 
 def _label_robot(
@@ -282,7 +266,7 @@ def view_of(maps: WorkspaceMaps, frame: Frame = _PAGE.frame) -> View:
         off_axis = (into + 0.25 * np.pi) % (0.5 * np.pi) - 0.25 * np.pi
         angle = np.copysign(max(abs(off_axis), np.radians(15.0)), off_axis)
         azimuth = float(into + angle - off_axis)
-    everything = np.concatenate([overlay.floor_corners(bounds), top, visible])
+    everything = np.concatenate([floor_corners(bounds), top, visible])
     return fitting(everything, azimuth, float(np.radians(28.0)), frame)
 
 

@@ -17,6 +17,7 @@ from designer.errors import MissingLibraryError
 from designer.report.figures import palette
 from designer.report.figures.colours import MapQuantity, Steps
 from designer.report.figures.opengl import why_no_scenes
+from designer.report.figures.parts import grid_faces, hull_edges, hull_faces, posts_m
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
 
 if TYPE_CHECKING:
@@ -86,23 +87,13 @@ class SceneCanvas:
         """Take everything off the stage."""
         self.scene.RemoveAllViewProps()
 
-    def aim(self) -> None:
-        """Point the camera."""
-        camera, view = self.scene.GetActiveCamera(), self.view
-        camera.SetPosition(*(view.centre_m + 20.0 * view.half_height_m * view.toward_camera))
-        camera.SetFocalPoint(*view.centre_m)
-        camera.SetViewUp(0.0, 0.0, 1.0)
-        camera.ParallelProjectionOn()
-        camera.SetParallelScale(view.half_height_m)
-        self.scene.ResetCameraClippingRange()
-
     def picture(self) -> Image:
         """Take the picture (height, width, 3), and clear the stage."""
         from PIL import Image as Pillow
         from vtkmodules.util.numpy_support import vtk_to_numpy
         from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
-        self.aim()
+        self.view.aim(self.scene)
         self.window.Render()
         (width, height), pixels = self.window.GetSize(), vtkUnsignedCharArray()
         self.window.GetPixelData(0, 0, width - 1, height - 1, 1, pixels, 0)
@@ -149,8 +140,7 @@ class SceneCanvas:
 
     def posts(self, tops_m: FloatArray, floor_m: float, width: float) -> None:
         """Add thin uprights from points (n, 3) down to the floor [m]."""
-        feet = tops_m * [1.0, 1.0, 0.0] + [0.0, 0.0, floor_m]
-        self.lines(np.stack([tops_m, feet], axis=1), palette.FAINT, width)
+        self.lines(posts_m(tops_m, floor_m), palette.FAINT, width)
 
     def cables(self, curves_m: Iterable[FloatArray]) -> None:
         """Add cables with a pale rim, so that they stand out from any colour behind them."""
@@ -185,7 +175,7 @@ class SceneCanvas:
             return
         hull = pyvista.PolyData.from_regular_faces(points_m.astype(np.float64), faces)
         self.add(hull, colour)
-        self.add(hull.extract_feature_edges(feature_angle=20.0), palette.INK, 2.0)
+        self.lines(points_m[hull_edges(points_m, faces)], palette.INK, 2.0)
 
     def border(self, triangles_m: FloatArray) -> None:
         """Add triangles (n, 3, 3) [m] that let through what lies behind them."""
@@ -262,8 +252,8 @@ def contour_lines(surface: PolyData, steps: Steps) -> list[FloatArray]:
 
 def _surface(field: RegionField, quantity: MapQuantity) -> PolyData:
     surface = quads(field.position_m, _valued_cells(field, quantity))
-    surface["values"] = np.nan_to_num(quantity.everywhere(field).ravel(order="F"))
-    surface["uplift"] = np.nan_to_num(field.uplift.ravel(order="F"))
+    surface["values"] = np.nan_to_num(quantity.everywhere(field).ravel())
+    surface["uplift"] = np.nan_to_num(field.uplift.ravel())
     return surface
 
 
@@ -281,28 +271,5 @@ def quads(position_m: FloatArray, cells: BoolArray) -> PolyData:
     """Return the chosen cells (n - 1, m - 1) of a grid (n, m, 3) as a mesh with all its points."""
     import pyvista
 
-    rows, columns = position_m.shape[:2]
-    number = np.arange(rows * columns).reshape((rows, columns), order="F")
-    corners = [number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]]
-    faces = np.stack([corner[cells] for corner in corners], axis=1)
-    points = position_m.reshape((-1, 3), order="F").astype(np.float64)
-    return pyvista.PolyData.from_regular_faces(points, faces)
-
-
-def hull_faces(points_m: FloatArray) -> NDArray[np.int64]:
-    """Return the triangles of the hull of points, by their indices (n_faces, 3).
-
-    For points in one plane the triangles of their outline, for points on a line none.
-    """
-    from scipy.spatial import ConvexHull
-
-    centred = points_m - points_m.mean(axis=0)
-    _, extent, axes = np.linalg.svd(centred)
-    rank = int(np.sum(extent > 1e-6 * max(float(extent[0]), 1e-12)))
-    if rank < 2 or len(points_m) < 3:
-        return np.empty((0, 3), dtype=np.int64)
-    if rank == 3:
-        return np.asarray(ConvexHull(points_m).simplices, dtype=np.int64)
-    outline = ConvexHull(centred @ axes[:2].T).vertices
-    fan = [[outline[0], outline[k], outline[k + 1]] for k in range(1, len(outline) - 1)]
-    return np.array(fan, dtype=np.int64)
+    faces = grid_faces(*position_m.shape[:2])[cells.ravel()]
+    return pyvista.PolyData.from_regular_faces(position_m.reshape(-1, 3).astype(np.float64), faces)

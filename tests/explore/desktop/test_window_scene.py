@@ -117,12 +117,12 @@ def test_the_mouse_reads_the_map(yard: Driver) -> None:
 
 
 def test_dragging_elsewhere_turns_the_view_alone(yard: Driver) -> None:
-    place, view = yard.place.copy(), yard.scene.camera_.view
+    place, view = yard.place.copy(), yard.scene.view
     yard.drag(yard.scene, QPoint(30, 400), QPoint(60, 420), QPoint(120, 440))
-    assert yard.scene.camera_.view.azimuth_rad != view.azimuth_rad
+    assert yard.scene.view.azimuth_rad != view.azimuth_rad
     assert yard.place == pytest.approx(place)
     yard.keys("Home")
-    assert yard.scene.camera_.view.azimuth_rad == pytest.approx(view.azimuth_rad)
+    assert yard.scene.view.azimuth_rad == pytest.approx(view.azimuth_rad)
 
 
 def test_the_wheel_zooms_at_the_mouse(yard: Driver) -> None:
@@ -131,7 +131,7 @@ def test_the_wheel_zooms_at_the_mouse(yard: Driver) -> None:
     from PySide6.QtWidgets import QApplication
 
     point = slice_point(yard)
-    at, before = QPointF(yard.pixel(point)), yard.scene.camera_.pixels_per_m
+    at, before = QPointF(yard.pixel(point)), yard.scene.view.pixels_per_m
     where = yard.scene.mapToGlobal(at)
     none = Qt.MouseButton.NoButton
     event = QWheelEvent(
@@ -139,7 +139,7 @@ def test_the_wheel_zooms_at_the_mouse(yard: Driver) -> None:
         Qt.ScrollPhase.NoScrollPhase, False,
     )  # fmt: skip
     QApplication.sendEvent(yard.scene, event)
-    assert yard.scene.camera_.pixels_per_m > 1.2 * before
+    assert yard.scene.view.pixels_per_m > 1.2 * before
     assert (yard.pixel(point) - at.toPoint()).manhattanLength() <= 2
 
 

@@ -104,7 +104,7 @@ class Driver:
 
     def pixel(self, position_m: Sequence[float] | FloatArray) -> QPoint:
         """Return where a position is seen in the scene."""
-        x, y = self.scene.camera_.pixels(np.asarray(position_m, dtype=float))
+        x, y = self.scene.view.pixels(np.asarray(position_m, dtype=float))
         return QPoint(round(x), round(y))
 
     def click(self, widget: QWidget, at: QPoint | None = None) -> None:
