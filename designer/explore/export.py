@@ -19,7 +19,8 @@ from designer.explore.ropes import RopeRow, Ropes, quick_ropes
 from designer.io.output import output_folder
 from designer.progress import Reporter
 
-What = Literal["report", "tables", "vtk"]
+What = Literal["report", "picture", "tables", "vtk"]
+"""What can be exported; a picture is taken by the window itself."""
 COLUMNS = {
     "utilisation": "utilisation",
     "diameter": "diameter_m",

@@ -87,8 +87,6 @@ class Here:
         What else a reader must know; or empty.
     outside : str
         In what the pose is none of the workspace; or empty.
-    closure_residual_m, equilibrium_residual_N : float
-        What is left of the equations at most [m], [N, N·m]; NaN unless solved.
     """
 
     verdict: Verdict
@@ -104,8 +102,6 @@ class Here:
     stability: str
     caution: str
     outside: str
-    closure_residual_m: float
-    equilibrium_residual_N: float
 
     @property
     def is_solved(self) -> bool:
@@ -126,11 +122,6 @@ class Here:
                 f"{100.0 * self.utilisation:.4g} % of the allowable one."
             )
         return self.verdict.sentence
-
-    @property
-    def attachments_m(self) -> FloatArray:
-        """Where the cables hold the platform (n_cables, 3) [m]."""
-        return self.chords_m[:, 1]
 
     def curves_exaggerated_m(self, factor: float) -> FloatArray | None:
         """Return the shapes with their distance from the chords times a factor, None unless solved.
@@ -160,7 +151,7 @@ def here(question: Question, *, settled: bool = False) -> Here:
     elif statics.is_solved:
         cable = question.material.cable(float(sizing.diameter_m))
     verdict = Verdict(int(statics.verdict))
-    is_stiff, stability, stiffness = _stability(question, statics, cable, settled)
+    stays, stability, stiffness = _stability(question, statics, cable, settled)
     allowable = np.nan if cable is None else cable.allowable_tension_N
     utilisation = np.asarray(statics.cable_tension_N / allowable)
     return Here(
@@ -173,12 +164,10 @@ def here(question: Question, *, settled: bool = False) -> Here:
         max_tension_N=float(statics.largest_tension_N),
         utilisation=float(utilisation.max()),
         stiffness_N_per_m=stiffness,
-        is_stable=is_stiff,
+        is_stable=stays,
         stability=stability,
         caution=_caution(question, statics),
         outside=question.outside,
-        closure_residual_m=float(statics.closure_residual_m().max()),
-        equilibrium_residual_N=float(np.abs(statics.equilibrium_residual_N()).max()),
     )
 
 

@@ -52,18 +52,15 @@ class MapAnswer:
         Whether all rows and columns of the grids are there.
     rope : Rope, RopePerCable or None
         What tensions are of; None for the thinnest cable of the family at each pose.
-    before : mapping of str to mapping of str to array (n, m), or None
-        The values of the state that is compared with, at the same positions.
-    rope_before : Rope, RopePerCable or None
-        What its tensions are of.
+    before : MapAnswer or None
+        The same of the state that is compared with, at the same positions.
     """
 
     grids: Mapping[str, FloatArray]
     values: Mapping[str, Values]
     is_fine: bool
     rope: Rope | RopePerCable | None = None
-    before: Mapping[str, Values] | None = None
-    rope_before: Rope | RopePerCable | None = None
+    before: MapAnswer | None = None
 
     def difference(self, grid: str, key: str) -> FloatArray | None:
         """Return what a quantity has become less what it was, SI; None without a comparison.
@@ -71,9 +68,9 @@ class MapAnswer:
         NaN where there is none in either state. Categories have no difference but whether they are
         another one, 1, or not, 0.
         """
-        if self.before is None or key not in self.before.get(grid, {}):
+        if self.before is None or key not in self.before.values[grid]:
             return None
-        now, was = self.values[grid][key], self.before[grid][key]
+        now, was = self.values[grid][key], self.before.values[grid][key]
         if key in BY_KEY and BY_KEY[key].is_category:
             both_nan = np.isnan(now) & np.isnan(was)
             return np.asarray((now != was) & ~both_nan, dtype=np.float64)
@@ -108,16 +105,16 @@ def map_answer(
     against : Question, optional
         A state to compare with, at the same positions.
     """
-    workspace, rope = question.workspace, question.rope
-    if workspace is None:
-        return MapAnswer({}, {}, fine, rope)
-    grids = map_grids(workspace.region, slice_share, fine=fine)
+    if question.workspace is None:
+        return MapAnswer({}, {}, fine, question.rope)
+    grids = map_grids(question.workspace.region, slice_share, fine=fine)
     grids = {name: grid for name, grid in grids.items() if parts is None or name in parts}
-    values = _on_grids(question, workspace, grids, quantities)
-    if against is None or against.workspace is None:
-        return MapAnswer(grids, values, fine, rope)
-    before = _on_grids(against, against.workspace, grids, quantities)
-    return MapAnswer(grids, values, fine, rope, before, against.rope)
+    before = None
+    if against is not None and against.workspace is not None:
+        values = _on_grids(against, against.workspace, grids, quantities)
+        before = MapAnswer(grids, values, fine, against.rope)
+    values = _on_grids(question, question.workspace, grids, quantities)
+    return MapAnswer(grids, values, fine, question.rope, before)
 
 
 def _on_grids(
@@ -127,12 +124,10 @@ def _on_grids(
         return {}
     flat = np.concatenate([grid.reshape(-1, 3) for grid in grids.values()])
     ends = np.cumsum([grid[..., 0].size for grid in grids.values()])[:-1]
-    split = {
-        key: np.split(values, ends)
-        for key, values in values_at(question, workspace, flat, keys).items()
-    }
+    values = values_at(question, workspace, flat, keys)
+    parts = {key: np.split(column, ends) for key, column in values.items()}
     return {
-        name: {key: each[k].reshape(grid.shape[:2]) for key, each in split.items()}
+        name: {key: columns[k].reshape(grid.shape[:2]) for key, columns in parts.items()}
         for k, (name, grid) in enumerate(grids.items())
     }
 

@@ -155,15 +155,18 @@ class Question:
             raise DesignerError("the ropes of the groups are of a robot with other cables")
         return Cables(tuple(cables[rope] for rope in self.rope.ropes))
 
+    def _grade_of(self, rope: Rope) -> Grade:
+        """Return the grade with this size alone."""
+        grade = self.catalogue.grade(rope.grade_id)
+        sizes = tuple(size for size in grade.sizes if size.id == rope.size_id)
+        if not sizes:
+            raise DesignerError(f"the grade {grade.id} has no size {rope.size_id}")
+        return replace(grade, sizes=sizes)
+
     def cable_in(self, case: LoadCase, rope: Rope) -> Cable:
         """Return a rope with what it may be used to in a load case."""
-        return self._cable_of(rope, case)
-
-    def _cable_of(self, rope: Rope, case: LoadCase = STATIC) -> Cable:
-        grade = self.catalogue.grade(rope.grade_id)
-        size = next((size for size in grade.sizes if size.id == rope.size_id), None)
-        if size is None:
-            raise DesignerError(f"the grade {grade.id} has no size {rope.size_id}")
+        grade = self._grade_of(rope)
+        (size,) = grade.sizes
         allowance = Allowance.of(self.selection.under(case))
         if not allowance.efficiency(grade, size.diameter_m) > 0.0:
             raise DesignerError(
@@ -174,7 +177,7 @@ class Question:
 
     def _as_it_meets(self, rope: Rope) -> Cable:
         """Return a rope as stiff as at the largest tension that it meets, at few samples."""
-        cable = self._cable_of(rope)
+        cable = self.cable_in(STATIC, rope)
         if cable.stiffening is None:
             return cable
         if self.workspace is None:
@@ -184,9 +187,7 @@ class Question:
                     solve_sagging(self.robot, self.pose, stiffened).largest_tension_N
                 ),
             )
-        grade = self.catalogue.grade(rope.grade_id)
-        size = next(size for size in grade.sizes if size.id == rope.size_id)
-        (candidate,) = self._at_samples(self.workspace, [replace(grade, sizes=(size,))])
+        (candidate,) = self._at_samples(self.workspace, [self._grade_of(rope)])
         return candidate.cable
 
     def _at_samples(self, workspace: Workspace, grades: Sequence[Grade]) -> list[Candidate]:

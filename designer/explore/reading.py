@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from hashlib import sha256
 from pathlib import Path
 
 from designer.documents.document import Document, decode, document_of, read_bytes
@@ -67,11 +66,6 @@ class Reading:
         if self.document is None:
             return self.text
         return moved_to(folder, self.text, self.document, self.context.path.parent)
-
-
-def digest_of(text: str) -> str:
-    """Return what tells a text from others."""
-    return sha256(text.encode()).hexdigest()
 
 
 def text_of(path: Path) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -221,26 +220,25 @@ def _quick_row(candidate: Candidate, is_best: bool, is_in_front: bool) -> RopeRo
         standing, reason = "undominated", "holds at the samples, and no other beats it there"
     else:
         standing, reason = "dominated", "holds at the samples, and another one beats it there"
+    return _row(candidate, standing, reason)
+
+
+def _row(candidate: Candidate, standing: str, reason: str, is_searched: bool = False) -> RopeRow:
+    verification, figures = candidate.verification, candidate.figures
     return replace(
         _sold(candidate.grade, candidate.size),
         allowable_tension_N=candidate.cable.allowable_tension_N,
-        **_figures(candidate),
+        utilisation=verification.utilisation,
+        max_tension_N=verification.max_tension_N,
+        total_mass_kg=figures.mass_kg,
+        cost=figures.cost,
+        drum_diameter_m=figures.drum_diameter_m,
+        stiffness_N_per_m=figures.stiffness_N_per_m,
         standing=standing,
         reason=reason,
         place=_place(verification),
+        is_searched=is_searched,
     )
-
-
-def _figures(candidate: Candidate) -> dict[str, Any]:
-    verification, figures = candidate.verification, candidate.figures
-    return {
-        "utilisation": verification.utilisation,
-        "max_tension_N": verification.max_tension_N,
-        "total_mass_kg": figures.mass_kg,
-        "cost": figures.cost,
-        "drum_diameter_m": figures.drum_diameter_m,
-        "stiffness_N_per_m": figures.stiffness_N_per_m,
-    }
 
 
 def _place(verification: Verification) -> FloatArray | None:
@@ -309,15 +307,8 @@ def ropes_of(selection: SelectionResult, groups: GroupChoice | None = None) -> R
 
 def _full_row(candidate: Candidate) -> RopeRow:
     fails = any(requirement.state is State.FAILS for requirement in candidate.requirements)
-    return replace(
-        _sold(candidate.grade, candidate.size),
-        allowable_tension_N=candidate.cable.allowable_tension_N,
-        **_figures(candidate),
-        standing="rejected" if fails else candidate.standing,
-        reason=candidate.reason,
-        place=_place(candidate.verification),
-        is_searched=candidate.verification.is_refined,
-    )
+    standing = "rejected" if fails else candidate.standing
+    return _row(candidate, standing, candidate.reason, candidate.verification.is_refined)
 
 
 def _groups(choice: GroupChoice) -> Groups:

@@ -17,7 +17,7 @@ from designer.explore.entries import pose_text, put_back, with_entry
 from designer.explore.fields import Field, with_ends_of
 from designer.explore.history import History, Rejected, SessionState
 from designer.explore.question import Question, Rope, RopePerCable, first_place
-from designer.explore.reading import Context, Reading, digest_of, text_of
+from designer.explore.reading import Context, Reading, text_of
 from designer.io.output import write_file
 from designer.plugins.find import Plugins
 from designer.resources import example_file
@@ -46,7 +46,6 @@ class Session:
         self.rejected: dict[str, Rejected] = {}
         """Entries that were refused, by the path of their field."""
         self._saved = context.read(text)
-        self._digest = digest_of(text)
         self._question: tuple[SessionState, Question] | None = None
         self._fields: tuple[Reading, Reading, tuple[Field, ...]] | None = None
         place = first_place(self._saved.study)
@@ -300,16 +299,6 @@ class Session:
         """What would be done again; empty for nothing."""
         return self._history.undone[-1].label if self._history.undone else ""
 
-    @property
-    def can_undo(self) -> bool:
-        """Whether there is something to undo."""
-        return bool(self._history.done)
-
-    @property
-    def can_redo(self) -> bool:
-        """Whether there is something to do again."""
-        return bool(self._history.undone)
-
     def undo(self) -> None:
         """Take back the last step, if there is one."""
         self.rejected.clear()
@@ -339,7 +328,7 @@ class Session:
         if self.file is None:
             return "never saved"
         try:
-            return "same" if digest_of(text_of(self.file)) == self._digest else "changed"
+            return "same" if text_of(self.file) == self.saved_text else "changed"
         except InputError:
             return "changed" if self.file.exists() else "gone"
 
@@ -353,7 +342,7 @@ class Session:
         """
         text = text_of(self.path)
         self.rejected.clear()
-        self._set_saved(self._context.read(text))
+        self._saved = self._context.read(text)
         if text != self.text:
             self._take("Reload", None, self._saved, moves=True)
 
@@ -368,7 +357,7 @@ class Session:
         if self.file is None:
             raise OutputError(f"{self.name}: a shipped study is saved under another name")
         write_file(self.file, self.text)
-        self._set_saved(self.state.reading)
+        self._saved = self.state.reading
 
     def save_as(self, path: Path) -> None:
         """Write the study to another file, which it is from now on.
@@ -384,10 +373,7 @@ class Session:
         write_file(path, text)
         self.file, self._context = path, replace(self._context, path=path)
         self._stay_here()
-        self._set_saved(self.state.reading)
-
-    def _set_saved(self, reading: Reading) -> None:
-        self._saved, self._digest = reading, digest_of(reading.text)
+        self._saved = self.state.reading
 
 
 def _small(label: str) -> str:

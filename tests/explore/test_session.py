@@ -55,11 +55,11 @@ def test_random_steps_are_undone_to_the_letter(name: str, example: Any) -> None:
     for text in reversed(texts[:-1]):
         session.undo()
         assert session.text == text
-    assert not session.can_undo
+    assert not session.undo_label
     for text in texts[1:]:
         session.redo()
         assert session.text == text
-    assert not session.can_redo
+    assert not session.redo_label
 
 
 @pytest.mark.parametrize("name", example_names())
@@ -86,7 +86,7 @@ def test_own_texts_change_nothing(name: str, example: Any) -> None:
     session: Session = example(name)
     for one in session.fields():
         assert session.edit(one.path, one.text) == ()
-    assert not session.can_undo
+    assert not session.undo_label
 
 
 def test_comments_and_layout_are_kept(yard: Session) -> None:
@@ -108,7 +108,7 @@ def test_a_wrong_entry_is_told_and_the_last_study_lives_on(yard: Session) -> Non
     assert yard.rejected[MASS].text == "180 m"
     assert yard.study is study
     assert yard.faults == ()
-    assert not yard.can_undo
+    assert not yard.undo_label
     assert yard.edit(MASS, "181 kg") == ()
     assert yard.rejected == {}
 
@@ -173,7 +173,7 @@ def test_what_goes_on_is_one_step(yard: Session) -> None:
     yard.undo()
     assert "mass: 200 kg" in yard.text
     yard.undo()
-    assert not yard.can_undo
+    assert not yard.undo_label
     assert "mass: 180 kg" in yard.text
 
 

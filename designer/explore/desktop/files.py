@@ -15,7 +15,7 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 from designer.errors import DesignerError
 from designer.explore.desktop.live_session import LONG, NAMES, LiveSession
 from designer.explore.desktop.settings import Settings
-from designer.explore.export import Exported
+from designer.explore.export import Exported, What
 from designer.explore.session import Session
 from designer.plugins.find import Plugins
 from designer.report import format as fmt
@@ -25,7 +25,13 @@ _STUDIES = "Studies (*.yaml *.yml);;All files (*)"
 _ROBOTS = "Robots of CASPR and WireX (*.xml *.wcrfx);;All files (*)"
 _STARTER = "fast"
 """The study that has a comment to every field; `designer init` starts with it as well."""
-_NO_OPTION = QFileDialog.Option(0)
+_EXPORTS: dict[What, tuple[str, str, str]] = {
+    "report": ("Folder for the report", "-report", ""),
+    "picture": ("Picture of the scene", ".png", "Pictures (*.png)"),
+    "tables": ("Folder for the tables", "-tables", ""),
+    "vtk": ("The map for ParaView", "-map.vtu", "VTK grids (*.vtu)"),
+}
+"""Of each export the title of the dialog, how the name ends, and kinds of files; none: a folder."""
 _DISK_MS = 2000
 """Between two looks at the file: soon enough for who comes back from another editor."""
 
@@ -241,45 +247,25 @@ class Files(QObject):
 
     # Exports
 
-    def export_report(self) -> None:
-        """Write the report and all results, as the command does."""
-        self._export_folder("report", "Folder for the report")
-
-    def export_tables(self) -> None:
-        """Write cables, map and ropes as tables."""
-        ropes = self._live.answers.get("ropes")
-        self._export_folder("tables", "Folder for the tables", ropes=ropes)
-
-    def _export_folder(self, content: str, title: str, **options: object) -> None:
-        target = self._target(title, f"-{content}", "", QFileDialog.Option.ShowDirsOnly)
-        if target is not None:
-            self._live.begin_long("export", content=content, target=target, **options)
-
-    def export_map(self) -> None:
-        """Write the map for ParaView."""
-        target = self._target("The map for ParaView", "-map.vtu", "VTK grids (*.vtu)")
-        if target is not None:
-            self._live.begin_long("export", content="vtk", target=target.with_suffix(".vtu"))
-
-    def export_picture(self, scene: QWidget) -> None:
-        """Save the scene as it is seen."""
-        target = self._target("Picture of the scene", ".png", "Pictures (*.png)")
-        if target is not None:
-            path = target.with_suffix(".png")
-            is_saved = scene.grab().save(str(path))
-            self._live.message.emit(f"Saved {path}" if is_saved else f"{path}: cannot be written")
-
-    def _target(
-        self, title: str, ending: str, kinds: str, options: QFileDialog.Option = _NO_OPTION
-    ) -> Path | None:
-        """Ask for a place beside the study; None where the user gives up."""
-        session = self._live.session
+    def export(self, content: What, scene: QWidget) -> None:
+        """Ask where a report, tables, the map, or a picture of the scene is to be, and write it."""
+        session, (title, ending, kinds) = self._live.session, _EXPORTS[content]
         if session is None:
-            return None
+            return
         folder = Path.cwd() if session.file is None else session.file.resolve().parent
         start = str(folder / f"{session.path.stem}{ending}")
+        options = QFileDialog.Option(0) if kinds else QFileDialog.Option.ShowDirsOnly
         name, _ = QFileDialog.getSaveFileName(self._parent, title, start, kinds, options=options)
-        return Path(name) if name else None
+        if not name:
+            return
+        target = Path(name).with_suffix(Path(ending).suffix) if kinds else Path(name)
+        if content == "picture":
+            is_saved = scene.grab().save(str(target))
+            said = f"Saved {target}" if is_saved else f"{target}: cannot be written"
+            self._live.message.emit(said)
+            return
+        ropes = self._live.answers.get("ropes") if content == "tables" else None
+        self._live.begin_long("export", content=content, target=target, ropes=ropes)
 
     def _show_exported(self, exported: Exported | None) -> None:
         """Say what was written, and offer to open it."""

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QMenu
 
 from designer.explore.desktop import theme as themes
 from designer.explore.desktop.help import Help, show_about
+from designer.explore.export import What
 from designer.explore.quantities import QUANTITIES
 from designer.explore.session import Session
 from designer.resources import example_file, example_names
@@ -25,6 +26,12 @@ _VIEWS = (
     ("top", "From &above", "Ctrl+Alt+T", "Look down"),
     ("front", "From the &front", "Ctrl+Alt+F", "Look along y"),
     ("side", "From the &side", "Ctrl+Alt+S", "Look along x, against it"),
+)
+_EXPORTS: tuple[tuple[str, What, str, str, str], ...] = (
+    ("report", "report", "&Report …", "Ctrl+R", "All that the command writes"),
+    ("picture", "picture", "&Picture …", "Ctrl+Shift+P", "The scene as it is seen"),
+    ("tables", "tables", "&Tables …", "Ctrl+Shift+T", "Cables, map and ropes as CSV"),
+    ("map", "vtk", "&Map for ParaView …", "Ctrl+Shift+M", "The map as a VTK grid"),
 )
 _THEMES = {"system": "As the system", "light": "Light", "dark": "Dark"}
 
@@ -106,14 +113,11 @@ class Menus:
         )  # fmt: skip
         self._add(
             menu.addMenu("E&xport"),
-            Command("export report", "&Report …", "Ctrl+R", "All that the command writes",
-                    files.export_report),
-            Command("export picture", "&Picture …", "Ctrl+Shift+P", "The scene as it is seen",
-                    lambda: files.export_picture(window.work.scene)),
-            Command("export tables", "&Tables …", "Ctrl+Shift+T", "Cables, map and ropes as CSV",
-                    files.export_tables),
-            Command("export map", "&Map for ParaView …", "Ctrl+Shift+M", "The map as a VTK grid",
-                    files.export_map),
+            *(
+                Command(f"export {name}", text, keys, tip,
+                        partial(files.export, content, window.work.scene))
+                for name, content, text, keys, tip in _EXPORTS
+            ),
         )  # fmt: skip
         self._add(
             menu,
@@ -240,15 +244,15 @@ class Menus:
             "reload": session is not None and session.file is not None,
             "text": session is not None and page is not window.text,
             "scene": study is not None and not at_work,
-            "undo": session is not None and session.can_undo,
-            "redo": session is not None and session.can_redo,
+            "undo": session is not None and bool(session.undo_label),
+            "redo": session is not None and bool(session.redo_label),
             "put all back": session is not None and session.is_modified,
             "to worst": at_work and getattr(live.answers.get("worst"), "place", None) is not None,
             "to pose": at_work and study is not None and study.pose is not None,
             "keep pose": at_work,
             "pin": at_work,
             "release": live.pinned is not None,
-            **{f"export {content}": at_work for content in ("report", "picture", "tables", "map")},
+            **{f"export {name}": at_work for name, *_ in _EXPORTS},
             **{f"look {view}": at_work for view, *_ in _VIEWS},
         }
         for name, is_allowed in allowed.items():

@@ -99,8 +99,8 @@ class Painting:
     def note(self, answer: MapAnswer) -> str:
         """Return which cables the values are of, and whether of an older state."""
         cables = cables_words(None if self.quantity.key == "diameter" else answer.rope)
-        if self.is_difference and answer.rope != answer.rope_before:
-            cables = f"{cables}; A: {cables_words(answer.rope_before)}"
+        if answer.before is not None and answer.rope != answer.before.rope:
+            cables = f"{cables}; A: {cables_words(answer.before.rope)}"
         return f"{cables}; of an older state" if self.is_old else cables
 
     @property
