@@ -10,13 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from designer.documents.node import Key, Node, path_text, printable
-from designer.documents.opened import open_input
+from designer.documents.opened import read_bytes
 from designer.errors import Fault, InputError
 
 if TYPE_CHECKING:
     import yaml
 
-LARGEST_FILE_BYTES = 1_000_000
 MOST_VALUES = 200_000
 DEEPEST_NESTING = 24
 _CONTROL_CODE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
@@ -90,27 +89,6 @@ def document_of(raw: bytes, name: str, kind: FileKind = STUDY) -> Document:
 
 def _refuse(name: str, line: int | None, problem: str, expected: str = "") -> NoReturn:
     raise InputError([Fault(name, line, "", problem, expected)])
-
-
-def read_bytes(path: Path, name: str) -> bytes:
-    """Return what a file holds; `InputError` where it cannot be read, or is too large."""
-    expected = f"a YAML file of at most {LARGEST_FILE_BYTES / 1e6:g} MB"
-    try:
-        size = path.stat().st_size
-        if size > LARGEST_FILE_BYTES and path.is_file():
-            _refuse(name, None, f"the file has {size / 1e6:.3g} MB", expected)
-        with open_input(path) as file:
-            raw = file.read(LARGEST_FILE_BYTES + 1)
-    except FileNotFoundError:
-        _refuse(name, None, "there is no such file", expected)
-    except IsADirectoryError:
-        _refuse(name, None, "this is a folder", expected)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "its name is not valid"
-        _refuse(name, None, f"the file cannot be read: {reason.lower()}", expected)
-    if len(raw) > LARGEST_FILE_BYTES:
-        _refuse(name, None, "the file is too large", expected)
-    return raw
 
 
 def decode(raw: bytes, name: str) -> str:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import re
+import textwrap
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -50,6 +51,27 @@ def with_value(text: str, keys: Sequence[Key], value: str) -> str:
     for key in reversed(rest[1:]):
         value = f"{{{key}: {value}}}"
     return _with_field(text, node, str(rest[0]), value)
+
+
+def with_section(text: str, name: str, values: dict[str, Any], comment: str) -> str:
+    """Return the text with a section of its first level, a line for each value, below a comment.
+
+    Where the first level stands in braces, so does the section, without a comment.
+    """
+    root = compose(text)
+    if root.flow_style:
+        return with_value(text, (name,), json.dumps(values))
+    indent = " " * root.start_mark.column
+    text = with_value(text, (name,), "\n" + textwrap.indent(block(values), f"{indent}  "))
+    start = next(key.start_mark.index for key, _ in compose(text).value if key.value == name)
+    return f"{text[:start]}# {comment}\n{indent}{text[start:]}"
+
+
+def block(values: dict[str, Any]) -> str:
+    """Return values as YAML, a line for each."""
+    import yaml
+
+    return str(yaml.safe_dump(values, sort_keys=False)).rstrip()
 
 
 def without(text: str, keys: Sequence[Key]) -> str:
@@ -158,6 +180,8 @@ def _replaced(text: str, node: _Node, value: str) -> str:
         head = head.rstrip()
         if "#" in head[head.rfind("\n") + 1 :]:
             head += "\n" + " " * (node.start_mark.column + 1)
+    if value[0] == "\n":
+        return head.rstrip() + value + text[end:]
     blank = "" if not head or head[-1].isspace() or head[-1] in "[{" else " "
     return head + blank + value + text[end:]
 
@@ -174,7 +198,8 @@ def _with_field(text: str, node: _Node, name: str, value: str) -> str:
     at = _line_end(text, last)
     at -= text[:at].endswith("\r")
     indent = " " * node.value[0][0].start_mark.column
-    return f"{text[:at]}{newline}{indent}{name}: {value}{text[at:]}"
+    blank = "" if value[0] == "\n" else " "
+    return f"{text[:at]}{newline}{indent}{name}:{blank}{value}{text[at:]}"
 
 
 def _line_end(text: str, at: int) -> int:

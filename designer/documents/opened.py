@@ -12,6 +12,9 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
+from designer.errors import Fault, InputError
+
+LARGEST_FILE_BYTES = 1_000_000
 _KINDS = {
     stat.S_IFIFO: "it is a pipe, not a file",
     stat.S_IFCHR: "it is a device, not a file",
@@ -46,6 +49,39 @@ def read_input(path: Path) -> bytes:
     """Return what a regular file holds; raises as `open_input` does."""
     with open_input(path) as file:
         return file.read()
+
+
+def reason(error: Exception) -> str:
+    """Return in a few words why `open_input` could not open a file."""
+    return str(getattr(error, "strerror", None) or "its name is not valid").lower()
+
+
+def read_bytes(path: Path, name: str, kind: str = "a YAML file") -> bytes:
+    """Return what a file holds that the user calls ``name``, and that should be such a file.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or is larger than `LARGEST_FILE_BYTES`.
+    """
+    problem, raw = "the file is too large", b""
+    try:
+        size = path.stat().st_size
+        if size > LARGEST_FILE_BYTES and path.is_file():
+            problem = f"the file has {size / 1e6:.3g} MB"
+        else:
+            with open_input(path) as file:
+                raw = file.read(LARGEST_FILE_BYTES + 1)
+            if len(raw) <= LARGEST_FILE_BYTES:
+                return raw
+    except FileNotFoundError:
+        problem = "there is no such file"
+    except IsADirectoryError:
+        problem = "this is a folder"
+    except (OSError, ValueError) as error:
+        problem = f"the file cannot be read: {reason(error)}"
+    expected = f"{kind} of at most {LARGEST_FILE_BYTES / 1e6:g} MB"
+    raise InputError([Fault(name, None, "", problem, expected)])
 
 
 def _require_regular(mode: int) -> None:

@@ -12,10 +12,9 @@ from xml.sax.handler import ContentHandler
 from xml.sax.xmlreader import AttributesImpl, InputSource, Locator
 
 from designer.documents.node import printable
-from designer.documents.opened import open_input
+from designer.documents.opened import read_bytes
 from designer.errors import Fault, InputError
 
-LARGEST_FILE_BYTES = 1_000_000
 DEEPEST_NESTING = 64
 MOST_ELEMENTS = 100_000
 
@@ -124,20 +123,7 @@ def read_xml(path: Path) -> Element:
     InputError
         If the file cannot be read, or as there.
     """
-    name, expected = str(path), f"an XML file of at most {LARGEST_FILE_BYTES / 1e6:g} MB"
-    try:
-        with open_input(path) as file:
-            raw = file.read(LARGEST_FILE_BYTES + 1)
-    except FileNotFoundError:
-        problem = "there is no such file"
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "its name is not valid"
-        problem = f"the file cannot be read: {reason.lower()}"
-    else:
-        if len(raw) <= LARGEST_FILE_BYTES:
-            return xml_of(raw, name)
-        problem = "the file is too large"
-    raise InputError([Fault(name, None, "", problem, expected)])
+    return xml_of(read_bytes(path, str(path), "an XML file"), str(path))
 
 
 def xml_of(raw: bytes, name: str) -> Element:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from designer.documents.document import Document, decode, document_of, read_bytes
+from designer.documents.document import Document, decode, document_of
+from designer.documents.opened import read_bytes
 from designer.effects.registry import KnownEffects
 from designer.errors import DesignerError, Fault, InputError
 from designer.explore.fields import Field, study_fields

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,41 +9,34 @@ import numpy as np
 from designer.diagnosis.as_json import effects_table
 from designer.diagnosis.design import declared_by
 from designer.diagnosis.result import Diagnosis
-from designer.documents.modeline import with_schema_moved
+from designer.documents.document import decode, document_of
+from designer.documents.edits import scalar, with_section, with_value
 from designer.documents.opened import read_input
-from designer.io.config.moved import path_from
+from designer.io.config.moved import moved_to, path_from
 
 
 def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None) -> str:
     """Return the text of the config with the whole model in it.
 
     What was fitted and what was found go under ``effects``, noise that was estimated under
-    ``measurements.noise``. Comments and order are kept. Paths in it, which are relative to the
-    config, are rewritten for a config that lies in ``folder``. The ``text`` of the config is
-    what its file holds, if left out.
+    ``measurements.noise``. The rest stays as its author laid it out, but for paths in it, which
+    are rewritten for a config that lies in ``folder``. The ``text`` of the config is what its
+    file holds, if left out.
     """
-    from ruamel.yaml import YAML
-
-    source = diagnosis.study.source.path
-    yaml = YAML()
-    yaml.width = 100
-    document = yaml.load(read_input(source).decode("utf-8-sig") if text is None else text)
-    document["effects"] = effects_table(declared_by(diagnosis))
-    document.yaml_set_comment_before_after_key("effects", before=_origin(diagnosis))
-    if estimated := _estimated_noise(diagnosis):
-        noise = document["measurements"].setdefault("noise", {})
-        noise.update({**estimated, "estimated": list(estimated)})
-    moved = partial(path_from, folder)
-    if document.get("catalogues"):
-        document["catalogues"] = [moved(source.parent / path) for path in document["catalogues"]]
-    if (control := document.get("document")) and control.get("logo"):
-        control["logo"] = moved(source.parent / control["logo"])
-    assert diagnosis.study.measurements is not None
+    source, measured = diagnosis.study.source.path, diagnosis.study.measurements
+    assert measured is not None
+    if text is None:
+        text = decode(read_input(source), str(source))
+    text = moved_to(folder, text, document_of(text.encode(), str(source)), source.parent)
     # The data are not always those that the config names.
-    document["measurements"]["file"] = moved(diagnosis.study.measurements.file)
-    written = io.StringIO()
-    yaml.dump(document, written)
-    return with_schema_moved(written.getvalue(), source.parent, moved)
+    places: dict[tuple[str, ...], str] = {("file",): scalar(path_from(folder, measured.file))}
+    if noise := _estimated_noise(diagnosis):
+        places |= {("noise", kind): str(size) for kind, size in noise.items()}
+        places["noise", "estimated"] = f"[{', '.join(noise)}]"
+    for place, value in places.items():
+        text = with_value(text, ("measurements", *place), value)
+    effects = effects_table(declared_by(diagnosis))
+    return with_section(text, "effects", effects, _origin(diagnosis))
 
 
 def _origin(diagnosis: Diagnosis) -> str:

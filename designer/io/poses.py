@@ -10,7 +10,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.documents.bounds import BOUNDS
-from designer.documents.opened import open_input
+from designer.documents.opened import open_input, reason
 from designer.errors import Fault, InputError
 from designer.measured.names import POSITION, ROTATION_VECTOR
 from designer.measured.table import LogTable, RawColumn, read_table
@@ -58,9 +58,10 @@ def read_poses(path: Path, robot: Robot) -> PoseTable:
     try:
         file = open_input(path)
     except (OSError, ValueError) as error:
-        reason = (getattr(error, "strerror", None) or "its name is not valid").lower()
         expected = "a CSV file with columns x_m, y_m, z_m"
-        raise InputError([Fault("--poses", None, "", f"{path}: {reason}", expected)]) from None
+        raise InputError(
+            [Fault("--poses", None, "", f"{path}: {reason(error)}", expected)]
+        ) from None
     with file:
         table = read_table(file, str(path))
     columns = {column.name: column for column in table.columns}

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from designer.arrays import BoolArray, FloatArray, frozen_array
-from designer.documents.opened import open_input
+from designer.documents.opened import open_input, reason
 from designer.errors import Fault, InputError
 from designer.measured.assign import Assigned, assign
 from designer.measured.names import (
@@ -89,8 +89,7 @@ def _table(study: Study, measurements: Measurements) -> LogTable:
     except FileNotFoundError:
         problem = f"there is no file {path}"
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "its name is not valid"
-        problem = f"{path} cannot be read: {reason.lower()}"
+        problem = f"{path} cannot be read: {reason(error)}"
     else:
         with file:
             return read_table(file, str(path))

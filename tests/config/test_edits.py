@@ -8,7 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from designer.documents.document import document_of
-from designer.documents.edits import scalar, value_text, with_value, without, without_aliases
+from designer.documents.edits import (
+    scalar,
+    value_text,
+    with_section,
+    with_value,
+    without,
+    without_aliases,
+)
 from designer.resources import example_file, example_names
 
 TEXT = """\
@@ -126,3 +133,18 @@ def test_whatever_is_typed_is_one_value(typed: str) -> None:
     plain = " ".join(typed.split())
     found = yaml.compose(f"a: {{b: {scalar(typed)}}}")
     assert found.value[0][1].value[0][1].value == plain
+
+
+@pytest.mark.parametrize(
+    ("text", "becomes"),
+    [
+        ("a: 1\n", "a: 1\n# why\nb:\n  c:\n  - d: 0.5\n"),
+        ("b: {}  # old\na: 1\n", "# why\nb:\n  c:\n  - d: 0.5  # old\na: 1\n"),
+        ("b:\n  # old\n  d: 2\na: 1\n", "# why\nb:\n  # old\n  c:\n  - d: 0.5\na: 1\n"),
+        ("  b: 1\n  a: 1\n", "  # why\n  b:\n    c:\n    - d: 0.5\n  a: 1\n"),
+        ("{a: 1, b: {}}\n", '{a: 1, b: {"c": [{"d": 0.5}]}}\n'),
+    ],
+)
+def test_a_section_is_written_a_line_for_each_value(text: str, becomes: str) -> None:
+    assert with_section(text, "b", {"c": [{"d": 0.5}]}, "why") == becomes
+    assert yaml.safe_load(becomes)["b"] == {"c": [{"d": 0.5}]}

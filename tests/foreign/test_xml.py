@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from designer.documents.xml import DEEPEST_NESTING, LARGEST_FILE_BYTES, MOST_ELEMENTS, read_xml
+from designer.documents.opened import LARGEST_FILE_BYTES
+from designer.documents.xml import DEEPEST_NESTING, MOST_ELEMENTS, read_xml
 from designer.errors import InputError
 
 BOMB = (
@@ -26,7 +27,7 @@ SECRET = '<!DOCTYPE a [<!ENTITY b SYSTEM "file:///etc/hostname">]><a>&b;</a>'
         (SECRET.encode(), "declares entities"),
         (b"<a>" * (DEEPEST_NESTING + 1), "nested more than"),
         (b"<a>" + b"<b/>" * MOST_ELEMENTS + b"</a>", "more than"),
-        (b"<a>" + b"x" * LARGEST_FILE_BYTES + b"</a>", "too large"),
+        (b"<a>" + b"x" * LARGEST_FILE_BYTES + b"</a>", "the file has 1 MB"),
     ],
 )
 def test_what_is_refused(tmp_path, content: bytes, said: str) -> None:
@@ -40,7 +41,7 @@ def test_what_is_refused(tmp_path, content: bytes, said: str) -> None:
 def test_no_file_and_a_folder(tmp_path) -> None:
     with pytest.raises(InputError, match="there is no such file"):
         read_xml(tmp_path / "none.xml")
-    with pytest.raises(InputError, match="it is a folder, not a file"):
+    with pytest.raises(InputError, match="this is a folder"):
         read_xml(tmp_path)
 
 

@@ -11,7 +11,8 @@ from scipy.spatial import QhullError
 
 from designer.arrays import FloatArray
 from designer.documents.document import Document
-from designer.documents.opened import open_input
+from designer.documents.node import Data
+from designer.documents.opened import open_input, reason
 from designer.documents.picture import LARGEST_PICTURE_BYTES, why_not_shown
 from designer.documents.section import reader_of
 from designer.effects.effect import ALL_ANCHORS, Effect
@@ -42,14 +43,12 @@ def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]
         *ROBOT_CHECKS,
         prism_has_area,
         rectangle_has_area,
-        planar_region,
+        regions_fit_the_plane,
         places_are_near,
         catalogues_exist,
         each_cable_in_one_group,
-        selection_has_workspace,
-        limit_has_groups,
+        fields_go_together,
         load_cases_fit,
-        uncertainty_fits,
         effects_are_known,
         columns_fit_the_robot,
         unknowns_are_known,
@@ -90,15 +89,6 @@ def rectangle_has_area(parts: Parts) -> Iterator[Fault]:
         Rectangle.over(ends, parts.read(f"{_REGION}.inset") or 0.0, (0.0, 1.0))
     except ValueError as error:
         yield parts.fault(path, str(error), "a line that leaves something between its ends")
-
-
-def planar_region(parts: Parts) -> Iterator[Fault]:
-    """A planar robot has a flat region."""
-    for kind in ("prism", "box") if parts.is_planar else ():
-        if parts.raw(f"{_REGION}.{kind}") is not None:
-            problem = "is a solid region, but the robot is planar"
-            yield parts.fault(f"{_REGION}.{kind}", problem, "rectangle or points")
-            return
 
 
 def places_are_near(parts: Parts) -> Iterator[Fault]:
@@ -167,50 +157,72 @@ def each_cable_in_one_group(parts: Parts) -> Iterator[Fault]:
         yield parts.fault(_GROUPS, f"cables {listed} are in no group", once)
 
 
-def selection_has_workspace(parts: Parts) -> Iterator[Fault]:
-    """A product is chosen for a workspace."""
-    if parts.raw("selection") is not None and parts.raw("workspace") is None:
-        expected = "a workspace that the rope is to serve, or no selection"
-        yield parts.fault("selection", "has no meaning without a workspace", expected)
+_NO_WORKSPACE = "a workspace that the rope is to serve, or no selection"
+_NO_LIMIT = "has no meaning without selection.groups"
+_NO_CASES = "a workspace: a load case is for all its poses"
+_NO_ROPE = "a selection: it is the chosen rope that may not be enough"
+_NEEDS = (
+    ("selection", "workspace", "has no meaning without a workspace", _NO_WORKSPACE),
+    ("selection.max_distinct_products", _GROUPS, _NO_LIMIT, "groups, or neither"),
+    (_CASES, "workspace", "there is no workspace", _NO_CASES),
+    (_UNCERTAINTY, "selection", "there is no selection", _NO_ROPE),
+)
+"""Fields that another one has to be beside: what is wrong without it, and what is expected."""
+_EXCLUDES = (
+    (
+        _CASES,
+        "groups of cables are chosen for the static load alone: wind loads ropes of different "
+        "thickness in different directions, and all cables are solved with one",
+        "load_cases or groups, not both",
+    ),
+    (
+        _UNCERTAINTY,
+        "uncertainty is computed for one rope on all cables",
+        "uncertainty or groups, not both",
+    ),
+)
+"""Fields beside which groups of cables may not be."""
 
 
-def uncertainty_fits(parts: Parts) -> Iterator[Fault]:
-    """Uncertainty has a selection that it is for, of one rope for all cables."""
-    if parts.raw(_UNCERTAINTY) is None:
+def fields_go_together(parts: Parts) -> Iterator[Fault]:
+    """What each field needs is there, and what excludes another is there alone."""
+    given = {path for path, *_ in (*_NEEDS, *_EXCLUDES) if parts.raw(path) not in (None, [])}
+    for path, needed, problem, expected in _NEEDS:
+        if path in given and parts.raw(needed) is None:
+            yield parts.fault(path, problem, expected)
+    for path, problem, expected in _EXCLUDES:
+        if path in given and parts.raw(_GROUPS) is not None:
+            yield parts.fault(_GROUPS, problem, expected)
+
+
+def regions_fit_the_plane(parts: Parts) -> Iterator[Fault]:
+    """A planar robot has flat regions."""
+    if not parts.is_planar:
         return
-    if parts.raw("selection") is None:
-        expected = "a selection: it is the chosen rope that may not be enough"
-        yield parts.fault(_UNCERTAINTY, "there is no selection", expected)
-    if parts.raw("selection.groups") is not None:
-        problem = "uncertainty is computed for one rope on all cables"
-        yield parts.fault("selection.groups", problem, "uncertainty or groups, not both")
+    problem, expected = "is a solid region, but the robot is planar", "rectangle or points"
+    for kind in ("prism", "box"):
+        if parts.raw(f"{_REGION}.{kind}") is not None:
+            yield parts.fault(f"{_REGION}.{kind}", problem, expected)
+            break
+    for index, case in _load_cases(parts):
+        region = case.get("region")
+        if isinstance(region, dict) and ("prism" in region or "box" in region):
+            yield parts.fault(_CASES, problem, expected, index, "region")
 
 
-def limit_has_groups(parts: Parts) -> Iterator[Fault]:
-    """A limit on the number of products needs groups that may differ."""
-    path = "selection.max_distinct_products"
-    if parts.raw(path) is not None and parts.raw(_GROUPS) is None:
-        yield parts.fault(path, "has no meaning without selection.groups", "groups, or neither")
+def _load_cases(parts: Parts) -> Iterator[tuple[int, dict[str, Data]]]:
+    """Yield the load cases that are mappings, each with its place."""
+    cases = parts.raw(_CASES)
+    for index, case in enumerate(cases if isinstance(cases, list) else ()):
+        if isinstance(case, dict):
+            yield index, case
 
 
 def load_cases_fit(parts: Parts) -> Iterator[Fault]:
-    """Load cases have a workspace that they are for, names of their own, and cables that exist."""
-    cases = parts.raw(_CASES)
-    if not isinstance(cases, list) or not cases:
-        return
-    if parts.raw("workspace") is None:
-        expected = "a workspace: a load case is for all its poses"
-        yield parts.fault(_CASES, "there is no workspace", expected)
-    if parts.raw("selection.groups") is not None:
-        problem = (
-            "groups of cables are chosen for the static load alone: wind loads ropes of different "
-            "thickness in different directions, and all cables are solved with one"
-        )
-        yield parts.fault("selection.groups", problem, "load_cases or groups, not both")
+    """Load cases have names of their own, cables that exist, and what their wind acts on."""
     first_use: dict[str, int] = {}
-    for index, case in enumerate(cases):
-        if isinstance(case, dict):
-            yield from _case_fits(parts, index, case, first_use)
+    for index, case in _load_cases(parts):
+        yield from _case_fits(parts, index, case, first_use)
 
 
 def _case_fits(
@@ -233,10 +245,6 @@ def _case_fits(
             yield parts.fault(
                 _CASES, problem, "a selection, or a case without it", index, factor_name
             )
-    region = case.get("region")
-    if parts.is_planar and isinstance(region, dict) and ("prism" in region or "box" in region):
-        problem = "is a solid region, but the robot is planar"
-        yield parts.fault(_CASES, problem, "rectangle or points", index, "region")
     if case.get("wind") is None:
         return
     if parts.raw("robot.platform.drag") is None:
@@ -337,9 +345,8 @@ def logo_is_a_picture(parts: Parts) -> Iterator[Fault]:
     except FileNotFoundError:
         yield parts.fault(_LOGO, f"there is no file {path}", "a picture, relative to this file")
     except (OSError, ValueError) as error:
-        reason = (getattr(error, "strerror", None) or "its name is not valid").lower()
         expected = "a picture, relative to this file"
-        yield parts.fault(_LOGO, f"{path} cannot be read: {reason}", expected)
+        yield parts.fault(_LOGO, f"{path} cannot be read: {reason(error)}", expected)
     else:
         if problem is not None:
             yield parts.fault(_LOGO, f"{path.name} {problem[0]}", problem[1])

@@ -14,7 +14,6 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.documents.bounds import BOUNDS
 from designer.errors import Fault
-from designer.io.config.orientation import OrientationSection
 from designer.io.config.parts import Parts
 from designer.io.config.schema import ORIENTATION_KINDS
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
@@ -243,10 +242,7 @@ def _turns(parts: Parts) -> Iterator[tuple[str, FloatArray]]:
     """Yield where turns and moments stand, and their axes (n, 3)."""
     pose = parts.read("pose")
     if pose is not None:
-        turn = OrientationSection(
-            rotation_vector=pose.rotation_vector, quaternion=pose.quaternion, euler=pose.euler
-        )
-        yield "pose", turn.turn_rad[None]
+        yield "pose", pose.turn_rad[None]
     single, several, between = (parts.read(f"workspace.{kind}") for kind in ORIENTATION_KINDS)
     if single is not None:
         yield "workspace.orientation", single.turn_rad[None]

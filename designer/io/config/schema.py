@@ -1,4 +1,4 @@
-"""The config file as pydantic models: which fields there are and what each may hold.
+"""The config file as pydantic models: what each field is, may hold, and becomes in the study.
 
 Geometry, which needs several fields at once, is checked in `designer.io.config.checks`, and what is
 in ``effects`` in `designer.io.config.effects`.
@@ -6,6 +6,7 @@ in ``effects`` in `designer.io.config.effects`.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import (
@@ -18,6 +19,7 @@ from pydantic import (
     model_validator,
 )
 
+from designer.arrays import FloatArray, frozen_array
 from designer.documents import fields
 from designer.documents.bounds import MOST_CABLES, MOST_SAMPLES
 from designer.documents.fields import (
@@ -46,13 +48,17 @@ from designer.io.config.orientation import (
     OrientationSection,
     Quaternion,
     only_one_of,
+    rotation_vector_rad,
 )
 from designer.io.config.regions import AnyRegion, word_or_list
 from designer.io.config.uncertainty import UncertaintySection
-from designer.model.measurements import Reading
+from designer.model.limits import RopeLimits
+from designer.model.measurements import LogColumn, Measurements, Reading
 from designer.model.region import Sampling
-from designer.model.workspace import SAG_MAX, HangsBelow
-from designer.study import Objective
+from designer.model.robot import Poses
+from designer.model.space import Orientations
+from designer.model.workspace import SAG_MAX, HangsBelow, Workspace
+from designer.study import CableGroup, DocumentControl, Objective, Selection
 from designer.units import describe
 
 _GRADES = "'all' or a list of grade ids"
@@ -102,6 +108,15 @@ class PoseSection(Section):
             raise refusal(f"{describe(given)} is not a list", "[x, y, z]" + in_brackets(given))
         return {"position": given} if isinstance(given, list) else only_one_of(given)
 
+    @property
+    def turn_rad(self) -> FloatArray:
+        """Rotation vector (3,) [rad]."""
+        return rotation_vector_rad(self.rotation_vector, self.quaternion, self.euler)
+
+    def poses(self) -> Poses:
+        """Return it as poses, of which it is one."""
+        return Poses.at(self.position, self.turn_rad)
+
 
 class WorkspaceSection(Section):
     """Which poses the cable must serve."""
@@ -140,6 +155,30 @@ class WorkspaceSection(Section):
     def _one_kind_of_orientation(cls, value: object) -> object:
         return only_one_of(value, ORIENTATION_KINDS, "the workspace")
 
+    def workspace(self, exit_points_m: FloatArray) -> Workspace:
+        """Return the workspace over these exit points (n_cables, 3) [m]."""
+        return Workspace(
+            region=self.region.over(exit_points_m),
+            samples=self.samples,
+            sampling=self.sampling,
+            seed=self.seed,
+            hangs_below=self.hangs_below,
+            clearance_m=self.clearance,
+            floor_m=self.floor,
+            sag_max=self.sag,
+            family_sag_max=self.sag if "sag" in self.model_fields_set else None,
+            proof_s=self.proof,
+            orientations=self._orientations(),
+        )
+
+    def _orientations(self) -> Orientations:
+        if self.orientation_range is not None:
+            return Orientations.within(*self.orientation_range.bounds_rad)
+        turned = self.orientations or ((self.orientation,) if self.orientation else ())
+        if not turned:
+            return Orientations()
+        return Orientations(frozen_array([orientation.turn_rad for orientation in turned]))
+
 
 class LimitsSection(Section):
     """What the chosen rope is checked against beyond its strength."""
@@ -176,6 +215,20 @@ class SelectionSection(Section):
     """How many different ropes the groups of cables may have between them."""
     limits: LimitsSection = LimitsSection()
     """What else the chosen rope is checked against."""
+
+    def selection(self) -> Selection:
+        """Return how a product is chosen."""
+        groups, limits = self.groups or {}, self.limits
+        return Selection(
+            grades=None if self.grades == "all" else self.grades,
+            safety_factor=self.safety_factor,
+            objectives=self.objectives,
+            termination_efficiency=self.termination_efficiency,
+            sheave_diameter_m=self.sheave_diameter,
+            groups=tuple(CableGroup(name, cables) for name, cables in groups.items()),
+            max_distinct_products=self.max_distinct_products,
+            limits=RopeLimits(limits.stiffness, limits.excitation, limits.drum_capacity),
+        )
 
 
 class MeasuredCableSection(Section):
@@ -227,6 +280,26 @@ class MeasurementsSection(Section):
     search_time: fields.SearchTime = config_field("Time for the search", 600.0)
     """How long the diagnosis may search for effects."""
 
+    def measurements(self, folder: Path) -> Measurements:
+        """Return what was measured, with its file from this folder."""
+        return Measurements(
+            file=folder / self.file,
+            linear_density_kg_per_m=self.cable.linear_mass,
+            axial_stiffness_N=self.cable.axial_stiffness,
+            diameter_m=self.cable.diameter,
+            minimum_breaking_load_N=self.cable.minimum_breaking_load,
+            columns=tuple(
+                LogColumn(name, column.to, *column.conversion())
+                for name, column in self.columns.items()
+            ),
+            settled=self.settled,
+            unknown=self.unknown,
+            length_noise_m=self.noise.length,
+            tension_noise_N=self.noise.tension,
+            estimated_noise=self.noise.estimated,
+            search_time_s=self.search_time,
+        )
+
 
 class SurroundingsSection(Section):
     """What the laws of effects are given in a design."""
@@ -250,6 +323,17 @@ class DocumentSection(Section):
     """Who approved it."""
     logo: Text | None = None
     """A picture for the head, PNG, JPEG or SVG, relative to this file."""
+
+    def control(self, folder: Path) -> DocumentControl:
+        """Return the head of the report, with its logo from this folder."""
+        return DocumentControl(
+            self.number or "",
+            self.revision or "",
+            self.author or "",
+            self.checker or "",
+            self.approver or "",
+            None if self.logo is None else folder / self.logo,
+        )
 
 
 LoadCases = Annotated[

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Iterator
 
@@ -50,19 +49,12 @@ def config_name(diagnosis: Diagnosis) -> str:
 
 def effects_text(diagnosis: Diagnosis) -> str:
     """Return the block ``effects`` as YAML; empty where there are none."""
-    from ruamel.yaml import YAML
-
     from designer.diagnosis.as_json import effects_table
     from designer.diagnosis.design import declared_by
+    from designer.documents.edits import block
 
     table = effects_table(declared_by(diagnosis))
-    if not table:
-        return ""
-    stream = io.StringIO()
-    yaml = YAML()
-    yaml.default_flow_style = False
-    yaml.dump({"effects": table}, stream)
-    return stream.getvalue()
+    return f"{block({'effects': table})}\n" if table else ""
 
 
 def consequence(diagnosis: Diagnosis) -> str:
