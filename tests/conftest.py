@@ -11,9 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from designer.arrays import frozen_array
+from designer.arrays import FloatArray, frozen_array
 from designer.cli import terminal
-from designer.io.config import build
 from designer.io.config.schema import WorkspaceSection
 from designer.model.cable import Material
 from designer.model.robot import Platform, Robot
@@ -64,16 +63,15 @@ def six_cable_robot() -> Robot:
 @pytest.fixture(scope="session", autouse=True)
 def unproved() -> Iterator[None]:
     """Studies that do not ask for a proof get none: it takes its time on every report."""
-    made = build._workspace
+    made = WorkspaceSection.workspace
 
-    def without(section: WorkspaceSection | None, robot: Robot) -> Workspace | None:
-        found = made(section, robot)
-        if found is None or section is None or "proof" in section.model_fields_set:
-            return found
-        return replace(found, proof_s=0.0)
+    def without(section: WorkspaceSection, exit_points_m: FloatArray) -> Workspace:
+        workspace = made(section, exit_points_m)
+        asks = "proof" in section.model_fields_set
+        return workspace if asks else replace(workspace, proof_s=0.0)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(build, "_workspace", without)
+        patch.setattr(WorkspaceSection, "workspace", without)
         yield
 
 

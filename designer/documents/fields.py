@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import (
     AfterValidator,
@@ -204,6 +204,16 @@ class _ListOf:
             count = f"{len(given)} value" + "s" * (len(given) != 1)
             raise refusal(f"the list has {count}", self.expected)
         return given
+
+
+def reader_in(kind: Any, *, into_lists: bool = True) -> QuantityField | WholeNumber | None:
+    """Return what reads the numbers of an annotation, wherever in it they stand."""
+    if isinstance(kind, QuantityField | WholeNumber):
+        return kind
+    if get_origin(kind) is tuple and not into_lists:
+        return None
+    readers = (reader_in(part, into_lists=into_lists) for part in get_args(kind))
+    return next((reader for reader in readers if reader is not None), None)
 
 
 def list_of(least: int, greatest: int, expected: str) -> _ListOf:

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel
 
-from designer.documents.fields import QuantityField, WholeNumber
+from designer.documents.fields import QuantityField, WholeNumber, reader_in
 from designer.documents.node import Key, Node, path_text
 from designer.documents.section import words_at
 from designer.effects.effect import Effect
@@ -213,7 +213,7 @@ def _kinds(section: type[BaseModel]) -> Mapping[str, _Kind]:
         kind = info.rebuild_annotation()
         plain = get_args(kind)[0] if get_origin(kind) is Annotated else kind
         words = get_args(plain) if get_origin(plain) is Literal and len(get_args(plain)) > 1 else ()
-        reader, alone = (_reader_in(kind, into_lists=into) for into in (True, False))
+        reader, alone = (reader_in(kind, into_lists=into) for into in (True, False))
         found[name] = _Kind(reader, alone, words, NoneType in get_args(plain))
     return found
 
@@ -236,16 +236,6 @@ def _slots(value: Any, node: Node | None, place: tuple[Key, ...], kind: _Kind) -
     elif isinstance(value, int | float) and kind.reader is not None:
         is_optional = kind.is_optional and not in_list
         yield _Slot(place, value, given, kind.reader, is_optional=is_optional)
-
-
-def _reader_in(kind: Any, *, into_lists: bool) -> QuantityField | WholeNumber | None:
-    """Return what reads the numbers of a kind, wherever in it they stand."""
-    if isinstance(kind, QuantityField | WholeNumber):
-        return kind
-    if get_origin(kind) is tuple and not into_lists:
-        return None
-    each = (_reader_in(part, into_lists=into_lists) for part in get_args(kind))
-    return next((one for one in each if one is not None), None)
 
 
 def _effect_slots(

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from designer.documents.xml import Element, read_xml
 from designer.errors import Fault, InputError
-from designer.foreign.robot import ORIGIN, ForeignRobot, Point, held_at_one_point, moved
+from designer.foreign.robot import ORIGIN, ForeignRobot, Point, Remarks, held_at_one_point, moved
 
 BODIES, CABLES = "bodies", "cables"
 ROOTS = {"bodies_system": BODIES, "links": BODIES, "cables": CABLES}
@@ -119,13 +119,12 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
     ends = [_ends(cable, centre) for cable in _cables(cable_set)]
     exit_points, attachments = (tuple(points) for points in zip(*ends, strict=True))
     position, euler = _initial(joint_element, joint, base)
-    limits, no_region = _limits(joint_element, joint, base)
+    remarks: Remarks = {}
+    limits = _limits(joint_element, joint, base, remarks)
     if not joint.turns:
         point = held_at_one_point(cable_set, attachments)
         position = None if position is None else moved(position, point)
         limits = None if limits is None else _shifted(limits, point)
-    radius, remarks = _pulleys(cable_set)
-    tension_min, told = _forces(cable_set)
     return ForeignRobot(
         file=bodies.file,
         name=link.attributes.get("name", "").strip()
@@ -140,9 +139,9 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
         position_m=position,
         euler_xyz_rad=euler,
         limits_m=limits,
-        tension_min_N=tension_min,
-        pulley_radius_m=radius,
-        remarks={**remarks, **told, **no_region},
+        tension_min_N=_least_tension(cable_set, remarks),
+        pulley_radius_m=_pulley_radius(cable_set, remarks),
+        remarks=remarks,
     )
 
 
@@ -202,12 +201,12 @@ def _along(axes: tuple[int, ...], values: tuple[float, ...]) -> Point:
 
 
 def _limits(
-    element: Element, joint: _Joint, base: Point
-) -> tuple[tuple[tuple[float, float], ...] | None, dict[str, tuple[str, ...]]]:
-    """Return the limits of the joint; else what to know of those that the file has."""
+    element: Element, joint: _Joint, base: Point, remarks: Remarks
+) -> tuple[tuple[float, float], ...] | None:
+    """Return the limits of the joint, where the file has some that span a region."""
     written = [element.attributes.get(name, "").split() for name in ("q_min", "q_max")]
     if not all(written):
-        return None, {}
+        return None
     ends = []
     for name, words in zip(("q_min", "q_max"), written, strict=True):
         values = element.numbers(len(words), name)
@@ -215,18 +214,17 @@ def _limits(
     box = tuple(zip(*ends, strict=True))
     is_whole = min(map(len, written)) >= len(joint.axes)
     if is_whole and all(box[axis][0] < box[axis][1] for axis in joint.axes):
-        return box, {}
+        return box
     interval = " to ".join(f"[{' '.join(words)}]" for words in written)
-    return None, {
-        "workspace": (f"The limits of the joint in the file span no region: {interval}.",)
-    }
+    remarks["workspace"] = (f"The limits of the joint in the file span no region: {interval}.",)
+    return None
 
 
 def _shifted(box: tuple[tuple[float, float], ...], by: Point) -> tuple[tuple[float, float], ...]:
     return tuple((low + d, high + d) for (low, high), d in zip(box, by, strict=True))
 
 
-def _pulleys(cable_set: Element) -> tuple[float | None, dict[str, tuple[str, ...]]]:
+def _pulley_radius(cable_set: Element, remarks: Remarks) -> float | None:
     """Return the radius of the pulleys of all cables, if a study can have them."""
     cables = _cables(cable_set)
     pulleys = [
@@ -235,23 +233,22 @@ def _pulleys(cable_set: Element) -> tuple[float | None, dict[str, tuple[str, ...
         for pulley in cable.need("attachments").all("base_rotating_pulley")
     ]
     if not pulleys:
-        return None, {}
+        return None
     radii = {pulley.need("pulley_radius").numbers(1)[0] for pulley in pulleys}
     upward = all(
         math.isclose(_point(pulley.need("cable_entry_vector"))[2], 1.0) for pulley in pulleys
     )
     if len(pulleys) == len(cables) and len(radii) == 1 and upward:
-        return radii.pop(), {}
-    return None, {
-        "effects": (
-            "The file has pulleys that differ, or that cables do not reach from "
-            "below: exit points are taken as fixed.",
-        )
-    }
+        return radii.pop()
+    remarks["effects"] = (
+        "The file has pulleys that differ, or that cables do not reach from below: exit points are "
+        "taken as fixed.",
+    )
+    return None
 
 
-def _forces(cable_set: Element) -> tuple[float, dict[str, tuple[str, ...]]]:
-    """Return the least tension, the largest of those that the file has, and what to know."""
+def _least_tension(cable_set: Element, remarks: Remarks) -> float:
+    """Return the least tension, the largest of those that the file has."""
     limits: dict[str, set[float]] = {"force_min": set(), "force_max": set()}
     for cable in _cables(cable_set):
         for name, values in limits.items():
@@ -259,7 +256,6 @@ def _forces(cable_set: Element) -> tuple[float, dict[str, tuple[str, ...]]]:
             if element is not None:
                 values.update(element.numbers(1))
     least, largest = limits["force_min"], limits["force_max"]
-    remarks: dict[str, tuple[str, ...]] = {}
     if len(least) > 1:
         remarks["robot.tension_min"] = ("The file's cables differ; this is the largest.",)
     if largest:
@@ -267,4 +263,4 @@ def _forces(cable_set: Element) -> tuple[float, dict[str, tuple[str, ...]]]:
         remarks["cable"] = (
             f"The file lets cables pull with {forces} N at most, which no field of a study takes.",
         )
-    return max((0.0, *least)), remarks
+    return max((0.0, *least))

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from designer.documents.xml import Element
 
 Point = tuple[float, float, float]
+Remarks = dict[str, tuple[str, ...]]
+"""What to know of a field, by its path in a study; of the whole file under ""."""
 ORIGIN: Point = (0.0, 0.0, 0.0)
 
 
@@ -47,8 +49,8 @@ class ForeignRobot:
         Of pulleys that a study can have at the exit points [m].
     rope : ForeignRope or None
         What the cables are.
-    remarks : dict
-        What to know of a field, by its path in a study; of the whole file under "".
+    remarks : Remarks
+        What to know of its fields.
     """
 
     file: str
@@ -65,7 +67,7 @@ class ForeignRobot:
     tension_min_N: float = 0.0
     pulley_radius_m: float | None = None
     rope: ForeignRope | None = None
-    remarks: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    remarks: Remarks = field(default_factory=dict)
 
     @property
     def has_choice(self) -> bool:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from designer.documents.bounds import BOUNDS
 from designer.documents.xml import Element
-from designer.foreign.robot import ForeignRobot, ForeignRope, Point, held_at_one_point
+from designer.foreign.robot import ForeignRobot, ForeignRope, Point, Remarks, held_at_one_point
 
 ROOT = "models"
 _MASS = 25.0
@@ -49,8 +49,7 @@ def read_wirex(path: Path, root: Element) -> ForeignRobot:
     attachments = tuple(_position(chain.need("platform")) for chain in chains)
     if pattern in (_POINT, _PLANAR_POINT):
         held_at_one_point(robot, attachments)
-    platform, remarks = robot.find("platform"), dict[str, tuple[str, ...]]()
-    rope = _rope(root.find("cable"), remarks)
+    platform, remarks = robot.find("platform"), Remarks()
     _winch(root.find("winch"), remarks)
     return ForeignRobot(
         file=str(path),
@@ -62,7 +61,7 @@ def read_wirex(path: Path, root: Element) -> ForeignRobot:
         centre_of_mass_m=_centre(platform, remarks),
         plane_normal=(0.0, 0.0, 1.0) if pattern in (_PLANAR, _PLANAR_POINT) else None,
         pulley_radius_m=_pulley_radius(bases, remarks),
-        rope=rope,
+        rope=_rope(root.find("cable"), remarks),
         remarks=remarks,
     )
 
@@ -71,7 +70,7 @@ def _position(element: Element) -> Point:
     return element.number("x"), element.number("y"), element.number("z")
 
 
-def _mass(platform: Element | None, remarks: dict[str, tuple[str, ...]]) -> float | None:
+def _mass(platform: Element | None, remarks: Remarks) -> float | None:
     if platform is None or "mass" not in platform.attributes:
         return None
     mass = platform.number("mass")
@@ -83,7 +82,7 @@ def _mass(platform: Element | None, remarks: dict[str, tuple[str, ...]]) -> floa
     return None
 
 
-def _centre(platform: Element | None, remarks: dict[str, tuple[str, ...]]) -> Point | None:
+def _centre(platform: Element | None, remarks: Remarks) -> Point | None:
     element = None if platform is None else platform.find("centerofgravity")
     if element is None:
         return None
@@ -97,7 +96,7 @@ def _centre(platform: Element | None, remarks: dict[str, tuple[str, ...]]) -> Po
     return None
 
 
-def _rope(cable: Element | None, remarks: dict[str, tuple[str, ...]]) -> ForeignRope | None:
+def _rope(cable: Element | None, remarks: Remarks) -> ForeignRope | None:
     """Return the rope; None where the file does not say enough of one."""
     needed = ("radius", "breaking_load", "weight")
     if cable is None or any(name not in cable.attributes for name in needed):
@@ -127,7 +126,7 @@ def _rope(cable: Element | None, remarks: dict[str, tuple[str, ...]]) -> Foreign
     )
 
 
-def _winch(winch: Element | None, remarks: dict[str, tuple[str, ...]]) -> None:
+def _winch(winch: Element | None, remarks: Remarks) -> None:
     """Tell what the file has of the winches, as far as somebody entered it."""
     figures = []
     for (tag, name), (default, remark) in _WINCH.items():
@@ -141,7 +140,7 @@ def _winch(winch: Element | None, remarks: dict[str, tuple[str, ...]]) -> None:
         )
 
 
-def _pulley_radius(bases: list[Element], remarks: dict[str, tuple[str, ...]]) -> float | None:
+def _pulley_radius(bases: list[Element], remarks: Remarks) -> float | None:
     """Return the radius of the pulleys, where a study can have them and the file says so."""
     pulleys = [base for base in bases if "radius" in base.attributes]
     radii = {item.number("radius") for item in pulleys}

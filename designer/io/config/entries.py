@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, get_args
+from typing import Any
 
 from pydantic import BaseModel
 
-from designer.documents.fields import QuantityField
+from designer.documents.fields import QuantityField, reader_in
 from designer.documents.node import Key, Node, path_text
 from designer.io.config.columns import ColumnSection
 from designer.io.config.orientation import OrientationSection
@@ -30,8 +30,8 @@ def all_entries(section: BaseModel, node: Node | None, place: tuple[Key, ...] = 
         if isinstance(value, BaseModel):
             entries += all_entries(value, below, (*place, name))
         else:
-            quantity = _quantity_in((info.annotation, *info.metadata))
-            dimension = quantity.dimension if quantity else NUMBER
+            reader = reader_in(info.rebuild_annotation())
+            dimension = reader.dimension if isinstance(reader, QuantityField) else NUMBER
             entries += _entries(value, below, (*place, name), dimension)
     return entries
 
@@ -103,12 +103,3 @@ def _in_SI(value: Any, dimension: Dimension) -> str:
     if isinstance(value, tuple):
         return f"[{', '.join(_in_SI(item, NUMBER) for item in value)}] {dimension.unit}".rstrip()
     return str(value)
-
-
-def _quantity_in(parts: tuple[Any, ...]) -> QuantityField | None:
-    """Return the annotation of a field's numbers, wherever in its type it stands."""
-    for part in parts:
-        part_node = part if isinstance(part, QuantityField) else _quantity_in(get_args(part))
-        if part_node is not None:
-            return part_node
-    return None

@@ -110,16 +110,24 @@ def _material_and_family(
     cable = section.cable
     if isinstance(cable, CableSection):
         return Material(cable.density, cable.youngs_modulus, cable.allowable_stress), None
-    from designer.grades.family import GradeError, family_of  # most studies name no grade
+    from designer.grades.kept import kept_catalogue  # most studies name no grade
 
     usual = (section.selection or SelectionSection()).safety_factor
     family = GradeFamily(cable.grade, cable.safety_factor or usual)
     files = [Path(document.name).parent / name for name in section.catalogues]
-    try:
-        return family_of(family, files, plugins or find_plugins(with_plugins=False)), family
-    except GradeError as error:
-        fault = document.fault(("cable", "grade"), error.problem, error.expected)
-        raise InputError([fault]) from None
+    catalogue = kept_catalogue(
+        [file for file in files if file.exists()], plugins or find_plugins(with_plugins=False)
+    )
+    grade = next((grade for grade in catalogue.grades if grade.id == cable.grade), None)
+    if grade is None:
+        why = catalogue.explain_unknown(cable.grade)
+    else:
+        try:
+            return grade.family(family.safety_factor), family
+        except ValueError as error:  # a grade made in Python may lack stiffness or area
+            problem = f"cannot stand for a family: {error}"
+            why = problem, "a grade with breaking load, mass and stiffness"
+    raise InputError([document.fault(("cable", "grade"), *why)])
 
 
 def _with_family(
