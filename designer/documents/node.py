@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from designer.units import split_quantity
 
@@ -13,6 +14,18 @@ Data = dict[str, "Data"] | list["Data"] | str | int | float | bool | None
 
 Key = str | int
 """A field name, or the place in a list."""
+
+Keys = tuple[Key, ...]
+"""A path in a document, such as ``("sizes", 3, "linear_mass")``."""
+
+
+class Flaw(NamedTuple):
+    """One thing that is wrong with what a document holds: where, what was found and expected."""
+
+    keys: Keys
+    problem: str
+    expected: str = ""
+
 
 _WHOLE = re.compile(r"[-+]?\d{1,18}")
 _DECIMAL = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?")

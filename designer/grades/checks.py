@@ -14,8 +14,9 @@ from itertools import pairwise
 from typing import get_args
 
 from designer.documents.bounds import BOUNDS
+from designer.documents.node import Flaw, Keys
 from designer.grades.grade import Grade, RopeMaterial, Trust
-from designer.grades.materials import Flaw, Keys, within
+from designer.grades.materials import within
 from designer.grades.parts import Basis, ComputedColumn, ReferenceArea
 from designer.grades.proportions import proportion_flaws
 

@@ -49,9 +49,7 @@ def read_grade(path: Path) -> Grade:
     else:
         values = {field.name: getattr(sheet, field.name) for field in fields(sheet)}
         grade = Grade(**values, file=path.name)
-        faults += [
-            document.fault(flaw.keys, flaw.problem, flaw.expected) for flaw in find_flaws(grade)
-        ]
+        faults += [document.fault(*flaw) for flaw in find_flaws(grade)]
     if faults:
         raise InputError(sorted(faults, key=lambda fault: fault.line or 0))
     return grade

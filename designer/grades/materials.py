@@ -11,18 +11,6 @@ from dataclasses import dataclass, replace
 
 from designer.grades.grade import Grade
 
-Keys = tuple[str | int, ...]
-"""A path in a grade file, such as ``("sizes", 3, "linear_mass")``."""
-
-
-@dataclass(frozen=True, slots=True)
-class Flaw:
-    """One thing that is wrong with a grade: where in a file, what was found and expected."""
-
-    keys: Keys
-    problem: str
-    expected: str = ""
-
 
 def within(value: float, bounds: tuple[float, float]) -> bool:
     """Tell whether a value lies between two bounds, or on one of them."""

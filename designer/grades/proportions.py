@@ -11,11 +11,11 @@ import re
 from collections.abc import Iterator, Sequence
 from statistics import median
 
+from designer.documents.node import Flaw
 from designer.grades.grade import Grade, Size
 from designer.grades.materials import (
     MASS_OVER_METALLIC_AREA_KG_PER_M3,
     STEEL_DENSITY_KG_PER_M3,
-    Flaw,
     bounds_of,
     metallic_modulus_bounds_Pa,
     within,

@@ -252,6 +252,6 @@ def _sound(grade: Grade, complain: Callable[[str], None]) -> list[Grade]:
         complain(f"a Grade is not usable: {described(error)}")
         return []
     for flaw in flaws:
-        place = path_text(flaw.keys)
-        complain(str(Fault(f"grade {grade.id!r}", None, place, flaw.problem, flaw.expected)))
+        keys, *words = flaw
+        complain(str(Fault(f"grade {grade.id!r}", None, path_text(keys), *words)))
     return [] if flaws else [grade]

@@ -70,7 +70,7 @@ def test_every_effect_can_be_declared() -> None:
         if effect.takes_cable:
             given["cable"] = 4
         found = read_effects({effect.id: dict(given)}, 4, EFFECTS)
-        assert not found.refusals
+        assert not found.flaws
         ((place, declared),) = found.effects
         assert place == ("effects", effect.id)
         assert declared.cable == given.pop("cable", None)

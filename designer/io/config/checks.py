@@ -260,8 +260,8 @@ def _case_fits(
 def effects_are_known(parts: Parts) -> Iterator[Fault]:
     """Each effect has an id, parameters and a cable that there are, and leaves a platform."""
     declared, mass_kg = parts.declared, parts.read("robot.platform.mass")
-    for refusal in declared.refusals:
-        yield parts.document.fault(refusal.place, refusal.problem, refusal.expected)
+    for flaw in declared.flaws:
+        yield parts.document.fault(*flaw)
     for place, effect in declared.effects:
         if effect.id != "platform_mass" or mass_kg is None:
             continue

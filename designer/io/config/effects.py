@@ -9,26 +9,16 @@ from pydantic_core import PydanticCustomError
 
 from designer.documents.bounds import parameter_bound
 from designer.documents.fields import QuantityField, WholeNumber
-from designer.documents.node import Data, Key, Node, path_text, printable
+from designer.documents.node import Data, Flaw, Keys, Node, path_text, printable
 from designer.effects.effect import Effect, Parameter
 from designer.io.config.entries import as_given
 from designer.spelling import did_you_mean, nearest_name
 from designer.study import DeclaredEffect, Entry
 from designer.units import describe, format_SI
 
-Place = tuple[Key, ...]
 _SECTION = "effects"
 _MOST_LISTED = 8
 """Names of parameters in a message; of more, the first and the last are enough."""
-
-
-@dataclass(frozen=True, slots=True)
-class Refusal:
-    """What is wrong at one place of the section."""
-
-    place: Place
-    problem: str
-    expected: str
 
 
 @dataclass(slots=True)
@@ -36,14 +26,14 @@ class Found:
     """The effects of a section, each with its place, and all that is wrong."""
 
     n_cables: int
-    effects: list[tuple[Place, DeclaredEffect]] = field(default_factory=list)
-    refusals: list[Refusal] = field(default_factory=list)
+    effects: list[tuple[Keys, DeclaredEffect]] = field(default_factory=list)
+    flaws: list[Flaw] = field(default_factory=list)
 
-    def refuse(self, place: Place, problem: str, expected: str) -> None:
+    def refuse(self, keys: Keys, problem: str, expected: str) -> None:
         """Add something that is wrong."""
-        self.refusals.append(Refusal(place, problem, expected))
+        self.flaws.append(Flaw(keys, problem, expected))
 
-    def read(self, place: Place, kind: QuantityField | WholeNumber, content: Data) -> float | None:
+    def read(self, place: Keys, kind: QuantityField | WholeNumber, content: Data) -> float | None:
         """Return a value; None, and a refusal, for one that is none of its kind."""
         try:
             return kind.read(content)
@@ -81,7 +71,7 @@ def effect_entries(
 
 
 def _read_all(declared_effects: Found, effect: Effect, data: Data) -> None:
-    place: Place = (_SECTION, effect.id)
+    place: Keys = (_SECTION, effect.id)
     if not effect.takes_cable or not isinstance(data, list):
         _read_one(declared_effects, effect, place, data)
         return
@@ -100,7 +90,7 @@ def _read_all(declared_effects: Found, effect: Effect, data: Data) -> None:
             seen.add(declared.cable)
 
 
-def _read_one(declared_effects: Found, effect: Effect, place: Place, data: Data) -> None:
+def _read_one(declared_effects: Found, effect: Effect, place: Keys, data: Data) -> None:
     parameters = effect.parameters_for(declared_effects.n_cables)
     keys = ["cable"] * effect.takes_cable + [parameter.name for parameter in parameters]
     if not isinstance(data, dict) or not data:
@@ -135,7 +125,7 @@ def _read_one(declared_effects: Found, effect: Effect, place: Place, data: Data)
 
 
 def _value(
-    declared_effects: Found, place: Place, content: Mapping[str, Data], parameter: Parameter
+    declared_effects: Found, place: Keys, content: Mapping[str, Data], parameter: Parameter
 ) -> float:
     if parameter.name not in content:
         if not parameter.is_optional:
