@@ -77,10 +77,11 @@ def _with_unit(row: Any, units: Mapping[str, str | None]) -> Any:
     return row
 
 
-def read_grades(path: Path) -> tuple[list[GradeFile], list[Fault]]:
+def read_grades(path: Path, needs_any: bool = False) -> tuple[list[GradeFile], list[Fault]]:
     """Return the grades in a file or folder, and every fault of the files that give none.
 
-    Two files of the same folder with one id are a fault of the later one.
+    Two files of the same folder with one id are a fault of the later one; a folder without any is
+    one itself, where it needs to have some.
     """
     grades: dict[str, GradeFile] = {}
     faults: list[Fault] = []
@@ -99,17 +100,15 @@ def read_grades(path: Path) -> tuple[list[GradeFile], list[Fault]]:
             faults.append(
                 id_fault(grade_file, f"{grade_file.grade.id!r} is in {earlier.path} already")
             )
+    if needs_any and not grades and not faults:
+        problem = "there is no grade file in this folder"
+        faults.append(Fault(str(path), None, "", problem, "*.yaml files"))
     return list(grades.values()), faults
 
 
 def id_fault(grade_file: GradeFile, problem: str) -> Fault:
     """Return a fault of this grade's id, with its line."""
     return read_document(grade_file.path).fault(("id",), problem, "an id of its own")
-
-
-def nothing_found_fault(path: Path) -> Fault:
-    """Return the fault that a folder, which was meant to have grades, has none."""
-    return Fault(str(path), None, "", "there is no grade file in this folder", "*.yaml files")
 
 
 def grade_files(path: Path) -> list[Path]:

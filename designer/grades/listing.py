@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from designer.errors import Fault
-from designer.grades.files import nothing_found_fault, read_grades
+from designer.grades.files import read_grades
 from designer.grades.grade import TRUST_MEANING, Grade, Size
 from designer.grades.registry import Catalogue
 
@@ -120,10 +120,7 @@ def check_path(path: Path) -> list[Fault]:
 
     A folder without a grade file is a fault as well: nothing has been checked.
     """
-    files, faults = read_grades(path)
-    if not files and not faults:
-        return [nothing_found_fault(path)]
-    return faults
+    return read_grades(path, needs_any=True)[1]
 
 
 def _identity(grade: Grade) -> Iterator[tuple[str, str]]:

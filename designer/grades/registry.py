@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from designer.documents.node import path_text
 from designer.errors import Fault, InputError, described, one_line
 from designer.grades.checks import find_flaws
-from designer.grades.files import id_fault, nothing_found_fault, read_grades
+from designer.grades.files import id_fault, read_grades
 from designer.grades.grade import Grade
 from designer.grades.plain import Misfit
 from designer.plugins.find import Offer, Plugins, ask, find_plugins
@@ -199,10 +199,8 @@ class _Shelf:
         """Add what the config names; refuse all of it if anything is faulty."""
         faults: list[Fault] = []
         for path in paths:
-            files, unreadable = read_grades(path)
+            files, unreadable = read_grades(path, needs_any=True)
             faults += unreadable
-            if not files and not unreadable:
-                faults.append(nothing_found_fault(path))
             for file in files:
                 problems = self._add(replace(file.grade, origin=path.name))
                 faults += [id_fault(file, problem) for problem in problems]
