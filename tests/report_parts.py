@@ -11,10 +11,16 @@ from itertools import zip_longest
 from types import SimpleNamespace
 from typing import Any
 
-from designer.report.blocks import Report, Section
+from markupsafe import Markup
+
+from designer.analysis.provenance import Provenance
+from designer.diagnosis.result import Diagnosis
 from designer.report.design.report import section
 from designer.report.design.source import Source
+from designer.report.diagnosis.report import diagnosis_report
+from designer.report.document import Report, Section
 from designer.report.render import rendered
+from designer.report.templates import environment
 
 _VOID = ("img", "meta", "link", "br", "hr", "input", "path", "use", "rect", "circle", "line")
 
@@ -163,11 +169,15 @@ def page(part: object, name: str = "report") -> str:
         return part.body or rendered(part, stub).body
     if isinstance(part, Report):
         return "\n".join(rendered(section, part).body for section in part.sections)
-    if hasattr(part, "shape"):
-        return rendered(Section("blocks", "Blocks", (part,)), SimpleNamespace(name=name)).body
     if isinstance(part, tuple | list):
         return "\n".join(page(item, name) for item in part)
     return str(part)
+
+
+def caption(name: str, *values: object) -> str:
+    """A caption of a figure of the workspace, as its macro makes it."""
+    template = environment().get_template("report/captions.html.j2")
+    return said(Markup(vars(template.module)[name](*values)))
 
 
 def tree(part: object, name: str = "report") -> Node:
@@ -303,6 +313,34 @@ class Card:
 
 
 @dataclass(frozen=True)
+class DiagnosisPage:
+    """The first page of a diagnosis."""
+
+    verdict: Statement
+    findings: tuple[Statement, ...]
+    errors: Grid
+    design: tuple[str, ...]
+    sureness: tuple[Statement, ...]
+
+
+def diagnosis_page(part: Diagnosis | Report) -> DiagnosisPage:
+    """The first page, as its template shows it; plain spaces in what it means for the cable."""
+    report = part if isinstance(part, Report) else diagnosis_report(part, Provenance.now())
+    root = tree(rendered(report.section("answer"), report).body)
+    (verdict,) = [one for node in root.all("p", "verdict") for one in _statements(node)]
+    panels = {next(panel.all("h3")).text(): panel for panel in root.all("div", "panel")}
+    parts = {title: tuple(statements(panel).values()) for title, panel in panels.items()}
+    (errors,) = tables(root)
+    return DiagnosisPage(
+        verdict,
+        parts.get("What the model lacked", ()),
+        errors,
+        tuple(map(said, paragraphs(panels["What it means for the cable"]))),
+        parts["How sure this is"],
+    )
+
+
+@dataclass(frozen=True)
 class FirstPage:
     """The first page of a design report."""
 
@@ -314,7 +352,7 @@ class FirstPage:
     confidence: tuple[Statement, ...]
 
 
-def first_page(part: Source | Report[Any]) -> FirstPage:
+def first_page(part: Source | Report) -> FirstPage:
     """The first page, as its template shows it."""
     root = tree(part.section("answer") if isinstance(part, Report) else section(part, "answer"))
     (verdict,) = [one for node in root.all("p", "verdict") for one in _statements(node)]

@@ -16,8 +16,8 @@ from designer.model.cable import Cable, Cables
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
-from designer.report.blocks import Section
 from designer.report.design import carries
+from designer.report.document import Section
 from designer.report.render import rendered
 from designer.selection.assignment import Assignment, GroupVerification
 from designer.selection.candidate import Candidate

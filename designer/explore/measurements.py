@@ -173,7 +173,7 @@ def diagnosis_answer(question: Question, progress: Callable[[str], None]) -> Dia
     InputError
         If the study has no measurements, or the data are not as they should be.
     """
-    from designer.report.diagnosis.first_page import verdict
+    from designer.report.diagnosis.report import verdict
 
     study = question.study
     measured = read_measured(study)

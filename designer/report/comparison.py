@@ -8,15 +8,13 @@ from pathlib import Path
 
 from designer.analysis.comparison import Comparison
 from designer.report import format as fmt
-from designer.report.blocks import Report, Section, plain_report
+from designer.report.document import Report, Section
 from designer.report.figures import canvas, palette
 from designer.report.pictures import Drawing, vector
 from designer.report.render import write_pages
 
 
-def comparison_report(
-    comparison: Comparison, names: tuple[str, str], created: datetime
-) -> Report[None]:
+def comparison_report(comparison: Comparison, names: tuple[str, str], created: datetime) -> Report:
     """Return the document; ``names`` are those of the two files."""
     sections = {
         "differences": True,
@@ -27,7 +25,7 @@ def comparison_report(
     }
     context = {"comparison": comparison, "names": names, "changes": _changes(comparison)}
     titles = dict.fromkeys(str(result.get("name", "")) for result in (comparison.a, comparison.b))
-    return plain_report(
+    return Report.of(
         "comparison",
         " and ".join(titles),
         "Comparison of two designs",

@@ -11,7 +11,7 @@ from pathlib import Path
 from designer.documents.opened import read_input
 from designer.documents.picture import picture_type, why_not_shown
 from designer.grades.registry import Catalogue
-from designer.report.blocks import Control, Fact
+from designer.report.document import Control, ControlBox
 from designer.study import Study
 
 _DIGITS = 12
@@ -23,7 +23,9 @@ def control_of(study: Study, catalogue: Catalogue | None = None) -> Control:
     given = study.document
     names = ("number", "revision", "author", "checker", "approver")
     titles = ("Document", "Revision", "Author", "Checked", "Approved")
-    boxes = (Fact(title, getattr(given, name)) for name, title in zip(names, titles, strict=True))
+    boxes = (
+        ControlBox(title, getattr(given, name)) for name, title in zip(names, titles, strict=True)
+    )
     return Control(
         tuple(box for box in boxes if box.value),
         "" if given.logo is None else _data_uri(given.logo),

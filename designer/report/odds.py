@@ -5,7 +5,6 @@ from __future__ import annotations
 from designer.analysis.uncertainty.uncertainty import SizeOdds, UncertaintyAnalysis
 from designer.model.uncertainty import Input, Normal, Spread
 from designer.report import format as fmt
-from designer.report.blocks import Tone
 
 INPUT_NAMES: dict[str, str] = {
     "payload": "Payload",
@@ -31,7 +30,7 @@ def in_a_sentence(uncertainty: UncertaintyAnalysis) -> str:
     return f"{text}; this is strength alone, without the other requirements"
 
 
-def odds_tone(odds: SizeOdds) -> Tone:
+def odds_tone(odds: SizeOdds) -> str:
     """Return the colour of a probability, by the lower end of its confidence interval."""
     low = odds.probability_95[0]
     return "good" if low >= _LIKELY else "doubt" if low >= _UNLIKELY else "bad"

@@ -16,8 +16,8 @@ from designer.io.output import write_whole
 from designer.optimum.result import Optimum
 from designer.progress import SILENT, Reporter
 from designer.report import format as fmt
-from designer.report.blocks import MOST_ROWS, Report, Section, plain_report
 from designer.report.comparison import write_comparison
+from designer.report.document import MOST_ROWS, Report, Section
 from designer.report.figures import optimum as figures
 from designer.report.phrases import paragraphs
 from designer.report.pictures import Drawing, vector
@@ -25,7 +25,7 @@ from designer.report.render import write_pages
 from designer.report.templates import environment
 
 
-def optimum_report(optimum: Optimum, created: datetime) -> Report[None]:
+def optimum_report(optimum: Optimum, created: datetime) -> Report:
     """Return the document on an optimisation."""
     lines = [line for line in optimum.comparison.answers if line.differs]
     contexts: dict[str, dict[str, object]] = {
@@ -42,7 +42,7 @@ def optimum_report(optimum: Optimum, created: datetime) -> Report[None]:
         del contexts["differences"]
     sections = (Section(key, context={"optimum": optimum, **contexts[key]}) for key in contexts)
     title = optimum.given.study.name
-    return plain_report("optimise", title, "Optimisation of the robot", created, sections)
+    return Report.of("optimise", title, "Optimisation of the robot", created, sections)
 
 
 def write_optimum(

@@ -54,6 +54,16 @@ def in_first_orientation(study: Study) -> str:
     return ", in the first of the orientations" if study.workspace.orientations.count > 1 else ""
 
 
+def known(value: float, decimals: int) -> str:
+    """Return a number, or that there is none, such as a price that is not known."""
+    return fmt.fixed(value, decimals) if math.isfinite(value) else fmt.MISSING
+
+
+def whole_metres(value: float) -> str:
+    """Return a long length such as ``2 354 m``."""
+    return f"{fmt.count(round(value))}\u00a0m"
+
+
 def in_millimetres(value_m: float) -> str:
     """Return a length in millimetres with five digits, without the unit."""
     value = 1e3 * value_m

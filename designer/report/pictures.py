@@ -5,9 +5,7 @@ from __future__ import annotations
 import base64
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, overload
-
-from designer.report.blocks import Picture
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from designer.report.figures.stage import Image
@@ -52,31 +50,3 @@ def in_space(image: Image | None, page: str = "") -> Drawing | None:
 
     encoded = base64.b64encode(png(image)).decode()
     return Drawing(bitmap=f"data:image/png;base64,{encoded}", scene=page)
-
-
-@overload
-def chart(caption: str, alternative: str, svg: str) -> Picture: ...
-@overload
-def chart(caption: str, alternative: str, svg: None) -> None: ...
-def chart(caption: str, alternative: str, svg: str | None) -> Picture | None:
-    """Return a chart with its words. None stays None."""
-    drawing = vector(svg)
-    return None if drawing is None else Picture(caption, alternative, drawing.svg)
-
-
-@overload
-def scene(
-    caption: str, alternative: str, image: Image, *, page: str = "", kind: str = ""
-) -> Picture: ...
-@overload
-def scene(
-    caption: str, alternative: str, image: None, *, page: str = "", kind: str = ""
-) -> None: ...
-def scene(
-    caption: str, alternative: str, image: Image | None, *, page: str = "", kind: str = ""
-) -> Picture | None:
-    """Return a picture in space; ``page`` is the same to turn. None stays None."""
-    drawing = in_space(image, page)
-    if drawing is None:
-        return None
-    return Picture(caption, alternative, bitmap=drawing.bitmap, scene=page, kind=kind)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import io
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from designer.errors import Fault, InputError
 from designer.io.output import output_folder, write_whole
 from designer.io.results import write_results
 from designer.progress import SILENT, Reporter
-from designer.report.blocks import Report, Section
 from designer.report.design.report import design_report
+from designer.report.document import Report, Section
 from designer.report.fonts import with_fonts
 from designer.report.outline import add_outline
 from designer.report.paper import why_no_pdf
@@ -27,9 +27,7 @@ REPORT_FILES = ("report.html", "report.pdf", "result.json", "candidates.csv", "w
 """What `designer report` writes; the last two only where the study asks for them."""
 
 
-def render_html(
-    report: Report[Any], *, paged: bool = False, user_folder: Path | None = None
-) -> str:
+def render_html(report: Report, *, paged: bool = False, user_folder: Path | None = None) -> str:
     """Return a report as one self-contained HTML page.
 
     With ``paged`` it is meant for paper: without scenes to turn. For ``user_folder`` see
@@ -50,7 +48,7 @@ def render_html(
 
 def rendered(
     section: Section,
-    report: Report[Any] | None = None,
+    report: Report | None = None,
     templates: Environment | None = None,
     *,
     paged: bool = False,
@@ -64,8 +62,8 @@ def rendered(
     templates = templates or environment()
     name = f"{'report' if report is None else report.name}/{section.id}.html.j2"
     variables = {**section.context, "section": section, "report": report, "paged": paged}
-    shown = templates.select_template([name, "section.html.j2"]).make_module(variables)
-    title = getattr(shown, "title", section.title)
+    shown = templates.get_template(name).make_module(variables)
+    title = getattr(shown, "title", "")
     if not title:  # the template of a user need not repeat ours
         title = vars(templates.get_template(f"default/{name}").make_module(variables))["title"]
     return replace(section, title=title, body=Markup(shown))
@@ -136,7 +134,7 @@ def write_report_pages(
 
 
 def write_pages(
-    report: Report[Any],
+    report: Report,
     folder: Path,
     templates: Path | None = None,
     reporter: Reporter = SILENT,

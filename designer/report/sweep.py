@@ -16,7 +16,7 @@ from designer.analysis.result_json import evaluates_answer
 from designer.arrays import BoolArray, FloatArray
 from designer.documents.csv_text import csv_text
 from designer.io.output import write_whole
-from designer.report.blocks import Report, Section, plain_report
+from designer.report.document import Report, Section
 from designer.report.figures import sweep as figures
 from designer.report.figures.sweep import Axis
 from designer.report.pictures import vector
@@ -91,7 +91,7 @@ def pareto_front(values: FloatArray, counts: BoolArray) -> BoolArray:
     return front
 
 
-def sweep_report(dataset: xr.Dataset, name: str, created: datetime) -> Report[None]:
+def sweep_report(dataset: xr.Dataset, name: str, created: datetime) -> Report:
     """Return the document on a store, of a sweep called ``name``."""
     points = SweptPoints.of(dataset)
     contexts = {
@@ -101,7 +101,7 @@ def sweep_report(dataset: xr.Dataset, name: str, created: datetime) -> Report[No
         "reasons": _reasons(dataset),
     }
     sections = (Section(key, context=value) for key, value in contexts.items() if value)
-    return plain_report("sweep", name, "Sweep over a study", created, sections)
+    return Report.of("sweep", name, "Sweep over a study", created, sections)
 
 
 def write_sweep(

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
+import re
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from inspect import isfunction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from designer.errors import Fault, InputError, one_line
+from designer.report import captions, material_class, odds, phrases
 from designer.report import format as fmt
-from designer.report import material_class, odds, phrases
+from designer.report.diagnosis import words
 from designer.report.paper import why_no_pdf
 from designer.resources import data_folder
 
@@ -55,10 +58,28 @@ def _filters() -> dict[str, Callable[..., object]]:
     """Return the public functions of the rooms of words, by name."""
     return {
         name: function
-        for module in (fmt, phrases, odds, material_class)
+        for module in (fmt, phrases, captions, odds, material_class, words)
         for name, function in vars(module).items()
         if isfunction(function) and not name.startswith("_")
     }
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """A heading and a sentence or two as plain text, and the tone: good, bad, doubt or none."""
+
+    title: str
+    text: str
+    tone: str
+
+
+def plain_statement(name: str, context: Mapping[str, object]) -> Statement:
+    """Return what a template says that sets a title and a tone, for what is no page."""
+    from markupsafe import Markup
+
+    said = environment().get_template(name).make_module(dict(context))
+    text = re.sub(r"[ \n]+", " ", Markup(said).unescape()).strip()
+    return Statement(vars(said)["title"], text, vars(said)["tone"])
 
 
 def check_templates(folder: Path) -> None:

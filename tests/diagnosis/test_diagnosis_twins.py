@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from report_parts import diagnosis_page
 from shared_data import needs_shared, shared
 from twins import physics
 from twins.dataset import DataSet, make, size_for
@@ -24,7 +25,6 @@ from designer.io.config import read_study
 from designer.io.diagnosis_files import diagnosed_config
 from designer.measured.read import read_measured
 from designer.model.robot import Poses
-from designer.report.diagnosis.design import consequence
 from designer.statics.inverse import solve_sagging
 from designer.study import Study, as_built_by
 
@@ -227,7 +227,7 @@ def test_a_heavy_rope_on_the_machine_changes_no_other_rope(tmp_path) -> None:
     assert told.mounted_before is not None
     assert told.mounted_after is not None
     assert told.mounted_after.max_tension_N > told.mounted_before.max_tension_N
-    assert "Linear_mass belongs to the rope on the machine" in consequence(told)
+    assert "Linear_mass belongs to the rope on the machine" in diagnosis_page(told).design[0]
     assert json.dumps(told.to_dict(), allow_nan=False)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from report_parts import diagnosis_page
 from twins.dataset import DataSet, make, size_for
 from twins.robots import FAST3, FIELD4, HALL8, YARD3, TwinRobot
 
@@ -23,7 +24,6 @@ from designer.errors import InputError
 from designer.io.config import read_study
 from designer.measured.read import read_measured
 from designer.model.measured_data import Noise
-from designer.report.diagnosis.first_page import first_page
 
 BOTH = ("length", "tension")
 
@@ -107,7 +107,7 @@ def test_an_effect_shows_in_what_is_to_spare(seed, tmp_path) -> None:
     assert np.isfinite(found.measured.poses.position_m).all()
     told = found.to_dict()
     assert told["rows"]["poses"] == "estimated"
-    assert "Poses estimated" in {s.title for s in first_page(found).sureness}
+    assert "Poses estimated" in {s.title for s in diagnosis_page(found).sureness}
 
 
 @pytest.mark.slow
@@ -121,7 +121,7 @@ def test_what_poses_take_up_is_named_and_never_found(tmp_path) -> None:
     found = diagnose(case_in(written(dataset, tmp_path / "free")))
     assert found.findings == ()
     assert dict(found.skipped)["thermal_expansion"].startswith(TAKEN_UP)
-    (told,) = (s for s in first_page(found).sureness if s.title == "Poses estimated")
+    (told,) = (s for s in diagnosis_page(found).sureness if s.title == "Poses estimated")
     assert "thermal_expansion" in told.text
 
 

@@ -6,6 +6,7 @@ import io
 from dataclasses import dataclass, replace
 
 import pytest
+from report_parts import diagnosis_page
 from rich.console import Console
 from twins.dataset import make, size_for
 from twins.robots import YARD3
@@ -16,7 +17,6 @@ from designer.diagnosis.diagnose import diagnose
 from designer.io.config import read_study
 from designer.measured.read import read_measured
 from designer.progress import Pace, in_words
-from designer.report.diagnosis.sureness import sureness
 
 
 @dataclass
@@ -79,7 +79,7 @@ def test_a_search_without_time_says_what_it_did_not_try(tmp_path) -> None:
     assert found.findings == ()
     assert found.not_tried[0] == "round 1: all"
     assert found.to_dict()["search"]["is_complete"] is False
-    assert "round 1: all" in next(sureness(found)).text
+    assert "round 1: all" in diagnosis_page(found).sureness[0].text
     # What is left of the data is tested all the same.
     assert found.is_unexplained
 
@@ -98,7 +98,7 @@ def test_time_may_end_between_two_rounds(tmp_path, monkeypatch) -> None:
     found = diagnose(case_with(600.0, tmp_path))
     assert [finding.effect.key for finding in found.findings] == ["platform_mass"]
     assert found.not_tried == ("round 2: all", "rivals of platform_mass: all")
-    assert "No rivals" not in {statement.title for statement in sureness(found)}
+    assert "No rivals" not in {statement.title for statement in diagnosis_page(found).sureness}
 
 
 def test_what_is_not_tested_on_unseen_rows_is_no_finding(tmp_path, monkeypatch) -> None:

@@ -17,7 +17,7 @@ from designer.diagnosis.result import Diagnosis, DiagnosisVerdict, Reason
 from designer.diagnosis.statistics import heldout_rows
 from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.report.diagnosis.first_page import verdict
+from designer.report.diagnosis.report import verdict
 
 
 def case_in(dataset: DataSet, folder) -> Case:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from report_parts import tree
 
 from designer.analysis.analyse import Analysis, analyse
 from designer.analysis.pose import analyse_pose
@@ -26,7 +27,7 @@ from designer.model.machine import Machine
 from designer.model.measurements import Measurements
 from designer.model.robot import Poses
 from designer.progress import Silent
-from designer.report.design import assumptions
+from designer.report.design.report import section
 from designer.report.design.source import Source
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
@@ -166,8 +167,8 @@ def test_candidates_are_proved_with_the_mass_that_they_have_there(iced: Analysis
 
 
 def test_the_report_says_what_stands_for_the_family(iced: Analysis) -> None:
-    (items,) = assumptions.section(Source(iced)).blocks
-    (words,) = (text for text in items.items if "that the study declares" in text)
+    items = [item.text() for item in tree(section(Source(iced), "assumptions")).all("li")]
+    (words,) = (text for text in items if "that the study declares" in text)
     assert "do not act alike on all sections" in words
     assert "20\u00a0°C" in words
     result = json.loads(json.dumps(result_dict(iced), allow_nan=False))

@@ -31,8 +31,9 @@ def test_estimate(value: float, std: float, unit: str, text: str) -> None:
 
 
 def test_interval() -> None:
-    assert words.interval(Estimate(2.0, 0.5), "kg", 2.0).replace("\u00a0", " ") == "1 to 3 kg"
-    assert words.interval(Estimate(2.0, float("nan")), "kg", 2.0) == "–"
+    shown = words.interval_95(Estimate(2.0, 0.5), "kg")
+    assert shown.replace("\u00a0", " ") == "1.02 to 2.98 kg"
+    assert words.interval_95(Estimate(2.0, float("nan")), "kg") == "–"
 
 
 @pytest.mark.parametrize(

@@ -18,8 +18,8 @@ from designer.io.config import read_study
 from designer.model.point_list import PointList
 from designer.model.robot import Poses
 from designer.model.space import Orientations
+from designer.report.design.report import section
 from designer.report.design.source import Source
-from designer.report.design.workspace import section
 from designer.report.figures.scenes import edges_m
 from designer.report.phrases import described_orientations, described_region
 from designer.resources import example_file
@@ -95,7 +95,7 @@ def test_all_pictures_are_drawn(flat: Analysis, facade: Study, tmp_path: Path) -
     for analysis in (flat, listed):
         source = Source(analysis, draws=True)
         assert source.drawings.robot is not None
-        shown = pictures(section(source))
+        shown = pictures(section(source, "workspace"))
         assert any("z [m]" in picture.svg for picture in shown)
         assert not any("above" in picture.caption for picture in shown)
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from altered import altered
 from figures_cases import CASES, SIX, STEEL, THREE, inset, maps_of, pose_at, solved, study_of
+from report_parts import caption
 
 from designer.analysis.edge import edge_profile, first_failure_m
 from designer.analysis.field import RegionField, cable_curves_m, chords_m, field_at, largest_sag
@@ -20,7 +21,6 @@ from designer.model.prism import Prism
 from designer.model.rings import outline_m
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
-from designer.report.design.workspace_figures import edge_caption
 from designer.report.figures.canvas import names_of
 from designer.report.figures.colours import DIAMETER, RATIO, TENSION, tension_of
 from designer.resources import example_file
@@ -260,19 +260,19 @@ class TestEdge:
         assert profile.straight_distance_m == pytest.approx(0.32, abs=0.01)
         assert profile.limit_distance_m is not None
         assert profile.limit_distance_m < 0.1
-        text = edge_caption(replace(maps_of("served"), edge=profile))
+        text = caption("edge", profile)
         assert "within 0.3" in text and "counterweight" in text
 
     def test_only_a_proof_is_called_impossible(self) -> None:
         profile = maps_of("served").edge
         assert profile is not None
         assert profile.is_proved and not profile.holds_again
-        assert "no cable holds, however thick" in edge_caption(maps_of("served"))
+        assert "no cable holds, however thick" in caption("edge", profile)
         verdict = profile.field.verdict.copy()
         verdict[-1] = Verdict.NOT_CONVERGED
         unsure = replace(profile, field=replace(profile.field, verdict=verdict))
         assert not unsure.is_proved
-        text = edge_caption(replace(maps_of("served"), edge=unsure))
+        text = caption("edge", unsure)
         assert "no cable was found that holds" in text
 
 

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from figures_cases import STEEL, THREE, maps_of, solved
+from report_parts import caption
 
 from designer.analysis.layers import chosen_sizes, layers_of
 from designer.arrays import FloatArray
 from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.robot import Poses
-from designer.report.design.selection import layers_caption
 from designer.report.figures.scenes import colours, usable_scene
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX
 from designer.selection.usable import Usable, usable
@@ -110,9 +110,9 @@ def test_sizes_that_are_not_nested_are_said_to_be() -> None:
     first, *rest = found.sizes
     weak = replace(rest[0], lost_fraction=0.1)
     odd = replace(found, sizes=(first, weak, *rest[1:]))
-    assert "those of all thinner ones" in layers_caption(found)
-    assert "the thinnest of them that serves there" in layers_caption(odd)
-    assert "those of all thinner ones" not in layers_caption(odd)
+    assert "those of all thinner ones" in caption("layers", found)
+    assert "the thinnest of them that serves there" in caption("layers", odd)
+    assert "those of all thinner ones" not in caption("layers", odd)
     mixed = replace(found, sizes=(*found.sizes[:-1], replace(found.sizes[-1], fraction=0.5)))
     shown = chosen_sizes(mixed)
     diameters = [one.size.diameter_m for one in shown]

@@ -7,14 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from figures_cases import maps_of
-from report_parts import pictures
+from report_parts import caption, pictures
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.maps import Served, workspace_maps
-from designer.report.design import workspace
-from designer.report.design import workspace_figures as captions
+from designer.analysis.maps import Served
 from designer.report.design.report import section
-from designer.report.design.selection import usable_caption
 from designer.report.design.source import Source
 
 pytestmark = pytest.mark.slow
@@ -22,8 +19,8 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def crane(yard: Analysis) -> list[str]:
-    figures = captions.workspace_figures(workspace_maps(yard), draws_scenes=False)
-    return [picture.caption for picture in pictures(tuple(figures))]
+    charts = Source(yard, draws=True, missing="no scenes")
+    return [picture.caption for picture in pictures(section(charts, "family"))]
 
 
 def test_where_sag_hardly_matters_one_figure_less_says_so(crane: list[str]) -> None:
@@ -35,32 +32,32 @@ def test_where_sag_hardly_matters_one_figure_less_says_so(crane: list[str]) -> N
 
 def test_figures_that_would_be_flat_are_left_out(yard: Analysis) -> None:
     charts = Source(yard, draws=True, missing="no scenes")
-    shown = [picture.caption for picture in pictures(workspace.family(charts))]
-    assert len(pictures(workspace.section(charts))) == 1
+    shown = [picture.caption for picture in pictures(section(charts, "family"))]
+    assert len(pictures(section(charts, "workspace"))) == 1
     assert len(shown) == 3 and "All samples by verdict." not in shown  # every sample is held
     assert pictures(section(charts, "pose")) == []  # sag adds less than two per cent
 
 
 def test_where_sag_matters_the_caption_says_how_much() -> None:
-    assert "a factor of up to 3.06" in captions.panels_caption(maps_of("served"))
+    assert "a factor of up to 3.06" in caption("panels", maps_of("served"))
 
 
 def test_cover_says_how_large_the_region_is_and_what_it_needs() -> None:
-    text = captions.cover_caption(maps_of("served"))
-    assert "464 × 402 × 160\u00a0m" in text
-    assert text.endswith(" to 51.2\u00a0mm.")
+    text = caption("cover", maps_of("served"), None)
+    assert "464 × 402 × 160 m" in text
+    assert text.endswith(" to 51.2 mm.")
 
 
 def test_edge_says_where_the_region_and_where_all_cables_end() -> None:
-    text = captions.edge_caption(maps_of("served"))
-    assert "10.4\u00a0m before that edge" in text
-    assert "within 4.75\u00a0m" in text
+    text = caption("edge", maps_of("served").edge)
+    assert "10.4 m before that edge" in text
+    assert "within 4.75 m" in text
 
 
 def test_a_region_that_no_cable_serves_promises_no_diameter() -> None:
     maps = maps_of("served")
-    text = captions.served_caption(maps.served)
-    assert "serves nine poses of ten; the last tenth takes 51.2\u00a0mm." in text
+    text = caption("served", maps.served)
+    assert "serves nine poses of ten; the last tenth takes 51.2 mm." in text
     none = Served(
         diameter_m=np.empty(0),
         share=np.empty(0),
@@ -71,9 +68,9 @@ def test_a_region_that_no_cable_serves_promises_no_diameter() -> None:
         massless_needed_m=np.nan,
         samples=10,
     )
-    assert captions.served_caption(none).endswith("configured family serves.")
+    assert caption("served", none).endswith("configured family serves.")
     half = replace(maps.served, share=0.5 * maps.served.share)
-    assert captions.served_caption(half).endswith("configured family serves.")
+    assert caption("served", half).endswith("configured family serves.")
 
 
 def test_only_a_chosen_size_is_said_to_serve_all(yard: Analysis) -> None:
@@ -83,11 +80,10 @@ def test_only_a_chosen_size_is_said_to_serve_all(yard: Analysis) -> None:
     assert selection.chosen is not None
     whole = next(one.size for one in selection.usable.sizes if one.fraction == 1.0)
     picked = replace(selection.chosen, size=whole)
-    found = selection.usable
-    said = usable_caption(replace(selection, chosen=picked), found)
+    said = caption("usable", replace(selection, chosen=picked))
     assert f"chosen {whole.id} is the thinnest" in said
-    assert "thinnest" not in usable_caption(replace(selection, chosen=None), found)
+    assert "thinnest" not in caption("usable", replace(selection, chosen=None))
 
 
 def test_where_no_cable_holds_somewhere_the_span_says_so() -> None:
-    assert " Where a cable holds, it runs from " in captions.scene_caption(maps_of("partly"))
+    assert " Where a cable holds, it runs from " in caption("scene", maps_of("partly"))

@@ -9,14 +9,13 @@ from collections.abc import Callable
 import pytest
 from altered import altered
 from report_cases import DEFAULTS, FAST
-from report_parts import FirstPage, cells, first_page, paragraphs
+from report_parts import FirstPage, cells, first_page, paragraphs, said
 from test_report_groups import YARD
 from test_report_qualities import PRISM, SELECTION, SIX
 
 from designer.analysis.analyse import Analysis
 from designer.grades.grade import Limits
-from designer.report.design.candidates import front_sentence
-from designer.report.design.report import design_report
+from designer.report.design.report import design_report, section
 from designer.report.design.source import source_of
 from designer.report.figures.charts_selection import pareto_chart
 from designer.report.material_class import class_of
@@ -154,10 +153,10 @@ def test_fields_left_out_stand_in_the_appendix(fibre: Analysis) -> None:
 def test_one_size_alone_is_said_in_words(fibre: Analysis, analyses: dict[str, Analysis]) -> None:
     assert fibre.selection is not None
     assert len(fibre.selection.front) == 1
-    assert "3/4 in beats every other size" in front_sentence(fibre.selection)
-    none = analyses["too_thin"].selection
-    assert none is not None
-    assert front_sentence(none) == ""
+    shown = said(section(source_of(fibre, draws=False), "selection"))
+    assert "3/4 in beats every other size" in shown
+    none = said(section(source_of(analyses["too_thin"], draws=False), "selection"))
+    assert "beats every other size" not in none and "nothing to weigh it against" not in none
 
 
 def test_chart_tells_materials_apart(fibre: Analysis) -> None:

@@ -9,90 +9,70 @@ from typing import Any
 
 import pytest
 from altered import altered
-from markupsafe import Markup
 from report_cases import CASES, DEFAULTS, FAST
 from report_parts import cells, facts, first_page, said, table, tables, texts
 
 from designer.analysis.analyse import Analysis
 from designer.report import format as fmt
-from designer.report.blocks import (
-    MOST_ROWS,
-    Block,
-    Box,
-    Bullets,
-    Column,
-    Fact,
-    Facts,
-    Group,
-    Listing,
-    Picture,
-    Report,
-    Row,
-    Section,
-    Statement,
-    Subheading,
-    Table,
-)
 from designer.report.design import pose
-from designer.report.design.candidates import best_table, thin_table
 from designer.report.design.report import design_report
 from designer.report.design.report import section as section_of
 from designer.report.design.source import Source, source_of
+from designer.report.document import MOST_ROWS, Report, Section
 from designer.report.pictures import Drawing
 from designer.report.render import render_html
+from designer.report.templates import environment
+from designer.selection.result import SelectionResult
 from designer.sizing.loop import Iterate, LoopSizing
 
 pytestmark = pytest.mark.slow
-
-PICTURE = Picture("What it shows.", "For who cannot see it.", svg="<svg><path d=''/></svg>")
-SCENE = Picture(
-    "A scene.", "Also a scene.", bitmap="data:image/png;base64,AA==", scene="<p>3-D</p>"
-)
-BLOCKS: tuple[Block, ...] = (
-    "A paragraph with <i>.",
-    Markup("One with a <a href='#every'>link</a>."),
-    Facts((Fact("Length", "3 m", "paid out"), Fact("Source", "a table", "https://x.y", "#every"))),
-    Statement("Title", "Text of it.", "bad"),
-    Bullets(("one thing", "another thing")),
-    Listing("effects:\n  creep: 1\n"),
-    Subheading("below", "A heading below"),
-    Table.of(
-        "Caption.", ("Words", Column("Number", "mm")), ("a cell", "1"), Row(("b", "2"), "bad")
-    ),
-    Table.grouped("Groups.", ("Words",), (Group((Row(("c",), "", "a note"),), "Ours", "remark"),)),
-    PICTURE,
-    Box.of("keep", SCENE, None, "", "In a box."),
-)
-
-
-def with_pictures(report: Report[None]) -> Report[None]:
-    """The report with one more section that has every block."""
-    extra = Section.of("every", "Every kind of block", *BLOCKS)
-    return dataclasses.replace(report, sections=(*report.sections, extra))
 
 
 @pytest.fixture(scope="module")
 def reports(
     analyses: dict[str, Analysis], pose_only: Analysis, yard: Analysis
-) -> dict[str, Report[None]]:
+) -> dict[str, Report]:
     all_of_them = {**analyses, "pose_only": pose_only, "yard": yard}
     return {name: design_report(a, draws=False) for name, a in all_of_them.items()}
 
 
-def test_every_kind_of_block_has_its_macro(reports: dict[str, Report[None]]) -> None:
-    assert {type(block) for block in BLOCKS} >= set(Block.__args__)
-    html = render_html(with_pictures(reports["pose_only"]))
-    section = html[html.index('<h2 id="every">') :]
-    assert "<p>A paragraph with &lt;i&gt;.</p>" in section
-    assert "<a href='#every'>link</a>" in section
-    assert '<a href="#every">https://x.y</a>' in section
-    assert '<p class="statement bad"><strong>Title.</strong> Text of it.</p>' in section
-    assert re.search(r'<div class="keep">\s*<figure class="picture ">', section)
-    assert '<h3 id="below">' in section
+BLOCKS = """
+{%- from "blocks.html.j2" import box, bullets, fact, facts, picture, row with context -%}
+{%- from "blocks.html.j2" import statement, subheading, table with context -%}
+{% call facts() %}
+{{ fact("Length", text, "paid out") }}
+{{ fact("Source", "a table", "https://x.y", "#every") }}
+{% endcall %}
+{{ statement("Title", "bad", "Text of it.") }}
+{{ bullets(["one thing", text]) }}
+{{ subheading("below", "A heading below") }}
+{% set heads = ["Words", ("Number", "mm")] %}
+{% call table("Caption.", heads) %}
+{{ row(heads, ["a cell", "1"], group=("Ours", "remark", "good")) }}
+{{ row(heads, [text, "2"], "bad", "a note") }}
+{% endcall %}
+{% call box("keep") %}{% call picture(drawing, "Also a scene.") %}A scene.{% endcall %}{% endcall %}
+"""
+SCENE = Drawing(bitmap="data:image/png;base64,AA==", scene="<p>3-D</p>")
+
+
+@pytest.mark.parametrize("paged", [False, True])
+def test_every_macro_escapes_and_is_shown(paged: bool) -> None:
+    template = environment().from_string(BLOCKS)
+    html = template.render(paged=paged, text="With <i>.", drawing=SCENE)
+    assert html.count("With &lt;i&gt;.") == 3
+    assert '<a href="#every">https://x.y</a>' in html
+    assert '<p class="statement bad"><strong>Title.</strong> Text of it.</p>' in html
+    assert re.search(r'<div class="keep">\s*<figure class="picture ">', html)
+    assert '<h3 id="below">' in html
+    assert ("&lt;p&gt;3-D&lt;/p&gt;" in html) != paged
+    assert ('<tr class="group good">' in html) != paged
+    assert ('<tr class=" carries">' in html) == ('<span class="lifted good">' in html) == paged
+    assert [len(grid.groups[-1].rows) for grid in tables(html)] == [2]
 
 
 @pytest.mark.parametrize("case", [*CASES, "pose_only", "yard"])
-def test_every_row_fills_its_table(reports: dict[str, Report[None]], case: str) -> None:
+def test_every_row_fills_its_table(reports: dict[str, Report], case: str) -> None:
     found = tables(reports[case])
     assert len(found) >= 4
     for one in found:
@@ -100,18 +80,18 @@ def test_every_row_fills_its_table(reports: dict[str, Report[None]], case: str) 
         assert widths <= {len(one.columns)}
 
 
-def test_no_raw_number_reaches_the_page(reports: dict[str, Report[None]]) -> None:
+def test_no_raw_number_reaches_the_page(reports: dict[str, Report]) -> None:
     words = {word.strip("(),.") for text in texts(reports["positive"]) for word in text.split()}
     assert words.isdisjoint({"nan", "inf", "None", "array", "np.float64"})
 
 
-@pytest.mark.parametrize("kind", [Report, Source, Picture, Drawing])
+@pytest.mark.parametrize("kind", [Report, Source, Drawing])
 def test_every_field_is_documented(kind: type) -> None:
     names = {field.name for field in dataclasses.fields(kind)}
     assert {name for name in names if name not in (kind.__doc__ or "")} == set()
 
 
-def test_first_page_names_the_rope_and_its_margin(reports: dict[str, Report[None]]) -> None:
+def test_first_page_names_the_rope_and_its_margin(reports: dict[str, Report]) -> None:
     page = first_page(reports["positive"])
     assert page.verdict.tone == "good"
     assert page.card is not None
@@ -125,7 +105,7 @@ def test_first_page_names_the_rope_and_its_margin(reports: dict[str, Report[None
 
 
 def test_sag_table_shows_the_papers_workspace_figures(
-    reports: dict[str, Report[None]],
+    reports: dict[str, Report],
 ) -> None:
     family = reports["positive"].section("family")
     worst, _, massless = (row[-2:] for row in cells(family, "The thinnest diameter"))
@@ -134,7 +114,7 @@ def test_sag_table_shows_the_papers_workspace_figures(
     assert "a factor of 1.75 in diameter and of 3.06 in tension" in said(family)
 
 
-def test_sag_table_is_of_the_chosen_rope(reports: dict[str, Report[None]]) -> None:
+def test_sag_table_is_of_the_chosen_rope(reports: dict[str, Report]) -> None:
     answer = reports["positive"].section("answer")
     rows = cells(answer, "gost-6x19s-iwrc-1960")
     assert [row[0] for row in rows] == ["Tension", "Utilisation"]
@@ -143,7 +123,7 @@ def test_sag_table_is_of_the_chosen_rope(reports: dict[str, Report[None]]) -> No
     assert "its safety factor is 1.80" in said(answer)
 
 
-def test_pose_section_shows_the_papers_loop(reports: dict[str, Report[None]]) -> None:
+def test_pose_section_shows_the_papers_loop(reports: dict[str, Report]) -> None:
     assert cells(reports["positive"].section("pose"), "Iterations; 0 is")[:3] == [
         ("0", "86.39", "24.72"),
         ("1", "123.08", "29.51"),
@@ -170,7 +150,7 @@ def test_a_loop_that_does_not_settle_is_cut_short() -> None:
     assert len(shown) == 9  # with a row for what is between
 
 
-def test_candidates_begin_with_the_chosen_one(reports: dict[str, Report[None]]) -> None:
+def test_candidates_begin_with_the_chosen_one(reports: dict[str, Report]) -> None:
     section = reports["positive"].section("selection")
     first = table(section, "Sizes that hold everywhere").groups[0]
     assert first.title == "gost-6x19s-iwrc-1960"
@@ -182,16 +162,16 @@ def test_candidates_begin_with_the_chosen_one(reports: dict[str, Report[None]]) 
     assert cells(section, "Grades of which no size holds")[0][:2] == thin
 
 
-def test_every_size_is_accounted_for(analyses, reports: dict[str, Report[None]]) -> None:
-    """Those that no other beats, and those that fell out, are all there are."""
+def test_every_size_is_accounted_for(analyses, reports: dict[str, Report]) -> None:
+    """Those that no other beats, and those that were rejected, are all there are."""
     for case in ("positive", "too_thin", "no_finite_cable"):
         found, section = analyses[case].selection, reports[case].section("selection")
         assert found is not None
-        fallen = sum(int(row[1]) for row in cells(section, "Why the other sizes fell out"))
-        assert fallen + len(found.front) == len(found.candidates)
+        rejected = sum(int(row[1]) for row in cells(section, "Why the other sizes were rejected"))
+        assert rejected + len(found.front) == len(found.candidates)
 
 
-def test_what_each_size_serves(reports: dict[str, Report[None]]) -> None:
+def test_what_each_size_serves(reports: dict[str, Report]) -> None:
     section, start = reports["positive"].section("selection"), "How much of the workspace"
     shares = [row[2] for row in cells(section, start)]
     assert shares[0] == "0\u00a0%"
@@ -239,7 +219,7 @@ def test_doubtful_figures_carry_their_doubt(analyses: dict[str, Analysis]) -> No
     assert row.note == "Doubtful figures: looks misprinted"
 
 
-def test_numbers_of_sections_count_up(reports: dict[str, Report[None]]) -> None:
+def test_numbers_of_sections_count_up(reports: dict[str, Report]) -> None:
     numbers = re.findall(r'<h2 .*?<span class="number">(\d+)', render_html(reports["pose_only"]))
     assert numbers == ["1", "2", "3", "4", "5", "6", "7", "8"]
     assert [section.id for section in reports["positive"].sections] == [
@@ -262,7 +242,7 @@ def test_numbers_of_sections_count_up(reports: dict[str, Report[None]]) -> None:
     ]
 
 
-def test_first_page_says_how_much_is_left_out(reports: dict[str, Report[None]]) -> None:
+def test_first_page_says_how_much_is_left_out(reports: dict[str, Report]) -> None:
     pages = {case: first_page(report) for case, report in reports.items()}
     assert "of the volume is excluded, as configured" in pages["exclude"].verdict.text
     assert "excluded" not in pages["positive"].verdict.text
@@ -272,6 +252,11 @@ def test_first_page_says_how_much_is_left_out(reports: dict[str, Report[None]]) 
     assert {"Poses excluded", "Cables below the platform"}.isdisjoint(titles["yard"])
 
 
+def selection_page(analyses: dict[str, Analysis], selection: SelectionResult) -> Section | None:
+    analysis = altered(analyses["positive"], selection=selection)
+    return section_of(source_of(analysis, draws=False), "selection")
+
+
 def test_long_rankings_show_their_best_rows_and_say_where_the_rest_is(
     analyses: dict[str, Analysis],
 ) -> None:
@@ -279,11 +264,11 @@ def test_long_rankings_show_their_best_rows_and_say_where_the_rest_is(
     assert selection is not None
     outcome = next(o for o in selection.outcomes if o.best is not None)
     many = dataclasses.replace(selection, outcomes=(outcome,) * (MOST_ROWS + 3))
-    best = best_table(many)
-    assert best is not None
+    best = table(selection_page(analyses, many), "The best size of each grade")
     assert len(best.groups[0].rows) == MOST_ROWS
     assert "3\u00a0more grades are in candidates.csv." in best.caption
-    thin = thin_table([dataclasses.replace(outcome, outcome="too_thin", best=None)] * 9)
-    assert thin is not None
+    failing = dataclasses.replace(outcome, outcome="too_thin", best=None)
+    few = dataclasses.replace(selection, outcomes=(outcome, *[failing] * 9))
+    thin = table(selection_page(analyses, few), "Grades of which no size holds")
     assert len(thin.groups[0].rows) == MOST_ROWS
     assert "1\u00a0more grade is in candidates.csv." in thin.caption

@@ -18,8 +18,8 @@ from fontTools.ttLib import TTFont
 
 from designer.analysis.analyse import Analysis
 from designer.report import fonts
-from designer.report.blocks import Report
 from designer.report.design.report import design_report
+from designer.report.document import Report
 from designer.report.fonts import FACES, with_fonts
 from designer.report.render import render_html
 
@@ -34,7 +34,7 @@ NO_FONTS = '<?xml version="1.0"?><!DOCTYPE fontconfig SYSTEM "fonts.dtd"><fontco
 
 
 @pytest.fixture(scope="module")
-def report(pose_only: Analysis) -> Report[None]:
+def report(pose_only: Analysis) -> Report:
     return design_report(pose_only, draws=False)
 
 
@@ -45,9 +45,7 @@ def fonts_in(page: str) -> list[TTFont]:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="fontconfig's settings")
-def test_without_any_font_installed_the_pdf_is_the_same(
-    report: Report[None], tmp_path: Path
-) -> None:
+def test_without_any_font_installed_the_pdf_is_the_same(report: Report, tmp_path: Path) -> None:
     page, none = tmp_path / "page.html", tmp_path / "fonts.conf"
     page.write_text(render_html(report, paged=True), encoding="utf-8")
     none.write_text(NO_FONTS, encoding="utf-8")
@@ -93,7 +91,7 @@ def test_the_fonts_of_most_pages_are_made_once_on_a_machine(
     assert len([*tmp_path.rglob("*")]) == (2 if has_folder else 0)  # a folder and one font
 
 
-def test_every_letter_of_a_report_is_in_its_fonts(report: Report[None]) -> None:
+def test_every_letter_of_a_report_is_in_its_fonts(report: Report) -> None:
     page = render_html(report)
     for font in fonts_in(page):
         text = re.sub(r"<(style|svg|script).*?</\1>|<[^>]*>", "", page, flags=re.DOTALL)

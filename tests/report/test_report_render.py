@@ -16,8 +16,8 @@ from report_parts import table
 from test_report_context import with_pictures
 
 from designer.analysis.analyse import Analysis
-from designer.report.blocks import Report
 from designer.report.design.report import design_report
+from designer.report.document import Report
 from designer.report.figures import palette
 from designer.report.render import REPORT_FILES, render_html, render_pdf, rendered, write_report
 
@@ -49,12 +49,12 @@ def loads(html: str) -> Loads:
 
 
 @pytest.fixture(scope="module")
-def report(analyses: dict[str, Analysis]) -> Report[None]:
+def report(analyses: dict[str, Analysis]) -> Report:
     return with_pictures(design_report(analyses["positive"], draws=False))
 
 
 @pytest.fixture(scope="module")
-def pdf(report: Report[None]) -> pypdf.PdfReader:
+def pdf(report: Report) -> pypdf.PdfReader:
     return pypdf.PdfReader(io.BytesIO(render_pdf(render_html(report, paged=True))))
 
 
@@ -66,7 +66,7 @@ def outline_titles(items: list[object]) -> list[object]:
     ]
 
 
-def test_nothing_is_loaded_from_outside(report: Report[None]) -> None:
+def test_nothing_is_loaded_from_outside(report: Report) -> None:
     html = render_html(report)
     addresses = loads(html).addresses
     assert addresses
@@ -75,11 +75,11 @@ def test_nothing_is_loaded_from_outside(report: Report[None]) -> None:
     assert "@import" not in html
 
 
-def test_page_has_no_script_of_its_own(report: Report[None]) -> None:
+def test_page_has_no_script_of_its_own(report: Report) -> None:
     assert "script" not in loads(render_html(report)).tags
 
 
-def test_wide_tables_and_pictures_are_scrolled_by_keys(report: Report[None]) -> None:
+def test_wide_tables_and_pictures_are_scrolled_by_keys(report: Report) -> None:
     html = render_html(report)
     assert html.count('<div class="scroll" tabindex="0" role="region" aria-label="') >= 5
     views = re.findall(r'<div class="view"([^>]*)>', html)
@@ -90,7 +90,7 @@ def test_wide_tables_and_pictures_are_scrolled_by_keys(report: Report[None]) -> 
     )
 
 
-def test_dark_page_names_every_colour_again(report: Report[None]) -> None:
+def test_dark_page_names_every_colour_again(report: Report) -> None:
     """Each colour of the page, and of charts their ink, guides, paper and the blue of curves."""
     style = render_html(report)
     light = set(re.findall(r"(--[a-z-]+): ", style[style.index(":root {") :].split("}")[0]))
@@ -100,7 +100,7 @@ def test_dark_page_names_every_colour_again(report: Report[None]) -> None:
         assert f"stroke: {colour.lower()}" in dark
 
 
-def test_scenes_are_in_the_html_only(report: Report[None]) -> None:
+def test_scenes_are_in_the_html_only(report: Report) -> None:
     assert 'srcdoc="&lt;p&gt;3-D&lt;/p&gt;"' in render_html(report)
     assert "iframe" not in loads(render_html(report, paged=True)).tags
 
@@ -129,7 +129,7 @@ def test_markup_in_names_stays_text(analyses: dict[str, Analysis]) -> None:
     assert "&lt;img src=x onerror=alert(2)&gt;" in html
 
 
-def test_rendering_again_gives_the_same(report: Report[None]) -> None:
+def test_rendering_again_gives_the_same(report: Report) -> None:
     html = render_html(report, paged=True)
     assert html == render_html(report, paged=True)
     assert render_pdf(html) == render_pdf(html)
@@ -153,7 +153,7 @@ def test_first_page_has_the_answer_and_inputs_begin_on_the_second(pdf: pypdf.Pdf
     assert "robot.anchors" in second
 
 
-def test_pdf_outline_is_that_of_the_headings(pdf: pypdf.PdfReader, report: Report[None]) -> None:
+def test_pdf_outline_is_that_of_the_headings(pdf: pypdf.PdfReader, report: Report) -> None:
     titles = outline_titles(list(pdf.outline))
     top = [title for title in titles if isinstance(title, str)]
     assert top == [
@@ -186,7 +186,7 @@ def test_pdf_refuses_what_lies_outside(tmp_path: Path) -> None:
         render_pdf(f'<title>x</title><img src="{picture.as_uri()}">')
 
 
-def test_a_template_can_extend_ours(report: Report[None], tmp_path: Path) -> None:
+def test_a_template_can_extend_ours(report: Report, tmp_path: Path) -> None:
     (tmp_path / "page.html.j2").write_text(
         '{% extends "default/page.html.j2" %}{% block footer %}Our own footer.{% endblock %}',
         encoding="utf-8",
@@ -201,7 +201,7 @@ def test_a_template_can_extend_ours(report: Report[None], tmp_path: Path) -> Non
     assert "How sure this is" in html
 
 
-def test_a_misspelt_name_in_a_template_is_an_error(report: Report[None], tmp_path: Path) -> None:
+def test_a_misspelt_name_in_a_template_is_an_error(report: Report, tmp_path: Path) -> None:
     (tmp_path / "page.html.j2").write_text("{{ report.titel }}", encoding="utf-8")
     with pytest.raises(UndefinedError, match="titel"):
         render_html(report, user_folder=tmp_path)
@@ -226,7 +226,7 @@ def test_a_failed_report_leaves_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_browser_is_told_to_load_nothing(report: Report[None]) -> None:
+def test_a_browser_is_told_to_load_nothing(report: Report) -> None:
     html = render_html(report)
     policy = re.search(r'http-equiv="Content-Security-Policy" content="([^"]*)"', html)
     assert policy is not None
@@ -234,7 +234,7 @@ def test_a_browser_is_told_to_load_nothing(report: Report[None]) -> None:
     assert "http" not in policy.group(1)
 
 
-def test_on_paper_a_group_heading_stays_with_its_first_row(report: Report[None]) -> None:
+def test_on_paper_a_group_heading_stays_with_its_first_row(report: Report) -> None:
     title = table(report.section("selection"), "Sizes that hold everywhere").groups[0].title
     lifted = rf'<td><span class="lifted \w*">{re.escape(title)} '
     assert re.search(lifted, render_html(report, paged=True))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from altered import altered
-from report_parts import first_page, statements
+from report_parts import first_page, statements, table
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
@@ -128,8 +128,6 @@ def test_a_pose_outside_the_region_is_flagged_everywhere(analyses: dict[str, Ana
 
 
 def test_forces_of_one_table_row_have_one_unit(analyses: dict[str, Analysis]) -> None:
-    from designer.report.design.candidates import pareto_table
-
     selection = analyses["positive"].selection
     assert selection is not None and selection.chosen is not None
     chosen = selection.chosen
@@ -140,7 +138,10 @@ def test_forces_of_one_table_row_have_one_unit(analyses: dict[str, Analysis]) ->
         for o in selection.outcomes
     )
     for shown in (selection, replace(selection, outcomes=outcomes, chosen=small)):
-        heads = {c.title: c.unit for c in pareto_table(shown).columns}
+        page = section(
+            source_of(altered(analyses["positive"], selection=shown), draws=False), "selection"
+        )
+        heads = {c.title: c.unit for c in table(page, "Sizes that hold everywhere").columns}
         units = {heads[name] for name in ("Breaking load", "Allowable", "Largest tension")}
         assert units == ({"kN"} if shown is selection else {"N"})
 

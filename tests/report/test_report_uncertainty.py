@@ -14,9 +14,9 @@ from designer.analysis.uncertainty.poses import Checked
 from designer.analysis.uncertainty.shares import Share
 from designer.analysis.uncertainty.uncertainty import SizeOdds, UncertaintyAnalysis
 from designer.model.uncertainty import Normal, Uncertainty, Uniform
-from designer.report.blocks import Section
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
+from designer.report.document import Section
 from designer.report.odds import probability
 
 SPREADS: Any = {"payload": Normal(0.05), "modulus": Uniform(-0.15, 0.15)}

@@ -11,15 +11,15 @@ import pytest
 from designer.analysis.comparison import compare
 from designer.cli.commands import main
 from designer.errors import InputError
-from designer.report.blocks import Report
 from designer.report.comparison import comparison_report
+from designer.report.document import Report
 from designer.report.render import render_html, write_pages
 from designer.report.templates import check_templates
 
 EXTENDS = '{% extends "default/page.html.j2" %}'
 
 
-def report() -> Report[None]:
+def report() -> Report:
     result = {"name": "Crane", "provenance": {}}
     return comparison_report(compare(result, result), ("a", "b"), datetime(2026, 1, 2))
 

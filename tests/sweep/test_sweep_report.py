@@ -12,14 +12,14 @@ from report_parts import pictures, statements, tables
 from sweep_cases import SWEEP, written
 from test_sweep_run import swept
 
-from designer.report.blocks import Report
+from designer.report.document import Report
 from designer.report.sweep import NOT_EVALUATED, pareto_front, sweep_report
 from designer.sweep.store import read_store
 
 
 def page_of(
     a: Sequence[float], b: Sequence[float], goals: tuple[str, str], reason: str = ""
-) -> Report[None]:
+) -> Report:
     """Return the page on points 0, 1, 2 … with two results."""
     kept = {
         name: ("point", np.array(values, float), {"role": "kept", "goal": goal})
@@ -31,7 +31,7 @@ def page_of(
     return sweep_report(found, "few", datetime.now().astimezone())
 
 
-def best_of(page: Report[None]) -> list[tuple[str, ...]]:
+def best_of(page: Report) -> list[tuple[str, ...]]:
     best = [table for table in tables(page) if table.caption.startswith("The best point")]
     return [row.cells for table in best for group in table.groups for row in group.rows]
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from report_parts import paragraphs
 
 from designer.analysis.analyse import analyse
 from designer.arrays import frozen_array
@@ -15,8 +16,8 @@ from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.model.space import Orientations
 from designer.model.workspace import Workspace
+from designer.report.design.report import section
 from designer.report.design.source import Source
-from designer.report.design.workspace import section as workspace_section
 from designer.resources import example_file
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_massless
@@ -98,7 +99,6 @@ def test_terminal_and_report_say_that_there_is_none(tmp_path) -> None:
     analysis = analyse(ipanema(ACROSS), folder=tmp_path)
     said = dict(summary_rows(analysis))
     assert said["  massless"] == "none: straight cables do not hold every pose"
-    section = workspace_section(Source(analysis, draws=False, missing="pictures"))
-    assert section is not None
-    texts = [block for block in section.blocks if isinstance(block, str)]
-    assert any(text.startswith("Straight weightless cables do not hold every") for text in texts)
+    page = section(Source(analysis, draws=False, missing="pictures"), "workspace")
+    start = "Straight weightless cables do not hold every"
+    assert any(text.startswith(start) for text in paragraphs(page))

@@ -11,12 +11,14 @@ from itertools import zip_longest
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.verdict import Verdict
+from designer.proof.prove import Proof
 from designer.report import format as fmt
-from designer.report.blocks import MOST_ROWS
-from designer.report.design.proof import chosen_proof, proof_statement
 from designer.report.design.source import Source
-from designer.study import Entry
+from designer.report.document import MOST_ROWS
+from designer.report.templates import Statement, plain_statement
+from designer.study import Entry, rope_effects
 
 Context = Mapping[str, object]
 
@@ -59,12 +61,41 @@ def clearance(source: Source) -> Context | None:
     }
 
 
+def proof_statement(proved: Proof) -> Statement:
+    """Return what is proved, in a sentence or two."""
+    return plain_statement("report/proved.html.j2", {"proved": proved})
+
+
 def proof(source: Source) -> Context | None:
     """What was proved of the chosen rope, and how; None where nothing was to be."""
-    chosen = chosen_proof(source.analysis)
-    if chosen is None or chosen.status == "off":
+    selection = source.analysis.selection
+    proved = None if selection is None else selection.proof
+    if proved is None or proved.status == "off":
         return None
-    return {"proved": proof_statement(chosen), "boxes": chosen.boxes}
+    return {"proved": proved}
+
+
+def assumptions(source: Source) -> Context:
+    """What the results rest on."""
+    analysis, robot = source.analysis, source.analysis.built.robot
+    force, moment = np.split(robot.platform.wrench_N, [3])
+    down = robot.gravity_direction / np.linalg.norm(robot.gravity_direction)
+    qualities = analysis.qualities
+    return {
+        "robot": robot,
+        "checks_crossing": qualities is not None and qualities.interference is not None,
+        "effects": list(dict.fromkeys(effect.id for effect in analysis.study.effects)),
+        "rope_effects": rope_effects(analysis.study),
+        "force_N": force if force.any() else None,
+        "moment_Nm": moment if moment.any() else None,
+        "down": None if np.array_equal(down, [0.0, 0.0, -1.0]) else down,
+        "gravity_m_per_s2": STANDARD_GRAVITY_M_PER_S2,
+    }
+
+
+def nomenclature(_: Source) -> Context:
+    """The names of quantities, which stand in the template."""
+    return {}
 
 
 def verification(source: Source) -> Context | None:

@@ -2,25 +2,46 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from designer.report import format as fmt
-from designer.report.blocks import Picture
+from designer.report.captions import sag_matters
 from designer.report.design.carries import STEP_M, shares_of_inputs, slopes_of_moves
 from designer.report.design.pose import weight_effect
-from designer.report.design.workspace_figures import cover_picture
 from designer.report.odds import INPUT_NAMES
 from designer.report.pictures import Drawing, in_space, vector
 
 if TYPE_CHECKING:
     from designer.report.design.source import Source
+    from designer.report.figures.stage import Image
 
 
 _LITTLE = 0.02
 """A share by which sag may change a tension without a figure of that being worth its place."""
+
+
+def chart(draw: Callable[[Drawings], str | None]) -> cached_property[Drawing | None]:
+    """Make a chart of what returns its SVG; None where figures are not drawn."""
+
+    def drawn(drawings: Drawings) -> Drawing | None:
+        return vector(draw(drawings)) if drawings.source.draws else None
+
+    drawn.__doc__ = draw.__doc__
+    return cached_property(drawn)
+
+
+def scene(draw: Callable[[Drawings], Image | None]) -> cached_property[Drawing | None]:
+    """Make a picture in space of what returns its image; None where scenes are not drawn."""
+
+    def drawn(drawings: Drawings) -> Drawing | None:
+        return in_space(draw(drawings)) if drawings.source.draws_scenes else None
+
+    drawn.__doc__ = draw.__doc__
+    return cached_property(drawn)
 
 
 class Drawings:
@@ -33,119 +54,223 @@ class Drawings:
     """
 
     def __init__(self, source: Source) -> None:
-        self._source = source
+        self.source = source
+        self.analysis = source.analysis
 
-    @cached_property
-    def stiffness(self) -> Drawing | None:
+    @chart
+    def stiffness(self) -> str | None:
         """The displacement under a force, as a map in plan."""
-        if not self._source.draws:
-            return None
         from designer.report.figures.sections import stiffness_map
 
-        return vector(stiffness_map(self._source.analysis))
+        return stiffness_map(self.analysis)
 
-    @cached_property
-    def clearance(self) -> Drawing | None:
+    @chart
+    def clearance(self) -> str | None:
         """The smallest distance between cables and platform, as a map in plan."""
-        if not self._source.draws:
-            return None
         from designer.report.figures.sections import clearance_map
 
-        return vector(clearance_map(self._source.analysis))
+        return clearance_map(self.analysis)
 
-    @cached_property
-    def odds(self) -> Drawing | None:
+    @chart
+    def odds(self) -> str | None:
         """Histograms of the utilisation of each size, where inputs are not certain."""
-        survey = self._source.analysis.uncertainty
-        if not self._source.draws or survey is None:
-            return None
         from designer.report.figures.charts_uncertainty import odds_chart
 
+        survey = self.analysis.uncertainty
         sizes = [
             (size.candidate.size.id, size.utilisation, size is survey.chosen)
-            for size in survey.sizes
-            if np.isfinite(size.utilisation).any()
+            for size in (survey.sizes if survey is not None else ())
+            if survey is not None and np.isfinite(size.utilisation).any()
         ]
-        return vector(odds_chart(sizes)) if sizes else None
+        return odds_chart(sizes) if sizes else None
 
-    @cached_property
-    def shares(self) -> Drawing | None:
+    @chart
+    def shares(self) -> str | None:
         """The share of each input in the variance, as bars."""
-        survey = self._source.analysis.uncertainty
-        if not self._source.draws or survey is None:
-            return None
         from designer.report.figures.charts_uncertainty import shares_chart
 
-        return vector(shares_chart([(INPUT_NAMES[one.input], one) for one in survey.shares]))
-
-    @cached_property
-    def sensitivities(self) -> Drawing | None:
-        """What changes the utilisation, as bars."""
-        carries = self._source.analysis.carries
-        if not self._source.draws or carries is None:
+        survey = self.analysis.uncertainty
+        if survey is None:
             return None
+        return shares_chart([(INPUT_NAMES[share.input], share) for share in survey.shares])
+
+    @chart
+    def sensitivities(self) -> str | None:
+        """What changes the utilisation, as bars."""
         from designer.report.figures.charts_carries import carries_chart
 
+        carries = self.analysis.carries
+        if carries is None:
+            return None
         shares, moves = shares_of_inputs(carries), slopes_of_moves(carries)
         if not shares or not moves:
             return None
         step = f"{fmt.trimmed(1e3 * STEP_M)} mm"
         percents = [(name, 100.0 * STEP_M * slope) for name, slope in moves]
-        return vector(carries_chart(shares, percents, step))
+        return carries_chart(shares, percents, step)
 
-    @cached_property
-    def groups(self) -> Drawing | None:
+    @chart
+    def groups(self) -> str | None:
         """The robot from above, a colour for each group of cables."""
-        analysis = self._source.analysis
-        choice, workspace = analysis.groups, analysis.study.workspace
-        if not self._source.draws or choice is None or not choice.chosen.is_found:
-            return None
         from designer.report.figures.groups_plan import groups_plan
 
+        choice, workspace = self.analysis.groups, self.analysis.study.workspace
+        if choice is None or not choice.chosen.is_found:
+            return None
         assert workspace is not None
-        return vector(groups_plan(analysis.built.robot, workspace.region, analysis.assignment))
+        return groups_plan(self.analysis.built.robot, workspace.region, self.analysis.assignment)
 
-    @cached_property
-    def governing(self) -> Drawing | None:
-        """The robot in the governing pose, in space, the cable that governs marked."""
-        pose = self._source.analysis.governing
-        if not self._source.draws_scenes or pose is None:
-            return None
+    @scene
+    def governing(self) -> Image | None:
+        """The robot in the governing pose, the cable that governs marked."""
         from designer.report.figures.scenes import robot_scene
 
+        pose = self.analysis.governing
+        if pose is None:
+            return None
         statics = pose.alone
-        return in_space(robot_scene(statics, int(statics.cable_tension_N.argmax()), pose.loads))
+        return robot_scene(statics, int(statics.cable_tension_N.argmax()), pose.loads)
 
-    @cached_property
-    def robot(self) -> Drawing | None:
-        """The robot in the configured pose, in space."""
-        pose = self._source.analysis.pose
-        if not self._source.draws_scenes or pose is None:
-            return None
+    @scene
+    def robot(self) -> Image | None:
+        """The robot in the configured pose."""
         from designer.report.figures.scenes import robot_scene
 
+        pose = self.analysis.pose
+        if pose is None:
+            return None
         statics = pose.sizing.statics
         body, up = statics.robot.platform, statics.robot.level[2]
         loads = [("weight", -statics.robot.weight_N * up), ("load", body.wrench_N[:3])]
-        return in_space(robot_scene(statics, loads=loads))
+        return robot_scene(statics, loads=loads)
 
-    @cached_property
-    def loop(self) -> Drawing | None:
+    @chart
+    def loop(self) -> str | None:
         """The iterations as curves; None where they would be flat."""
-        pose = self._source.analysis.pose
-        if not self._source.draws or pose is None or not pose.loop.iterates:
-            return None
         from designer.report.figures.charts_pose import loop_chart
 
+        pose = self.analysis.pose
+        if pose is None or not pose.loop.iterates:
+            return None
         effect = weight_effect(pose)
         if effect is not None and pose.loop.has_converged and abs(effect) < _LITTLE:
             return None
-        return vector(loop_chart(pose))
+        return loop_chart(pose)
 
     @cached_property
-    def cover(self) -> Picture | Drawing | None:
-        """The picture of the first page: the region in space, else the robot."""
-        source = self._source
-        if not source.draws_scenes or source.maps is None:
-            return self.robot
-        return cover_picture(source.rope_maps or source.maps, source.analysis.ropes)
+    def cover(self) -> Drawing | None:
+        """The picture of the first page: the region for the ropes or the family, else the robot."""
+        return self.robot if self.source.maps is None else self._region_on_first_page
+
+    @scene
+    def _region_on_first_page(self) -> Image | None:
+        from designer.report.figures.colours import DIAMETER, UTILISATION
+        from designer.report.figures.scenes import cover_scene
+
+        source = self.source
+        maps = source.rope_maps or source.maps
+        assert maps is not None
+        return cover_scene(maps, DIAMETER if self.analysis.ropes is None else UTILISATION)
+
+    @cached_property
+    def region(self) -> Drawing | None:
+        """The region in space, coloured by the diameter that the family needs, also to turn."""
+        maps = self.source.maps
+        if maps is None or not self.source.draws_scenes:
+            return None
+        from designer.report.figures.interactive import workspace_scene_html
+        from designer.report.figures.scenes import workspace_scene
+
+        return in_space(workspace_scene(maps), workspace_scene_html(maps))
+
+    @chart
+    def of_ropes(self) -> str | None:
+        """Maps of the utilisation of the ropes of the answer, and of the tension or what sag adds."""
+        from designer.report.figures.colours import RATIO, UTILISATION, tension_of
+        from designer.report.figures.sections import slice_panels
+
+        maps = self.source.rope_maps
+        if maps is None:
+            return None
+        other = RATIO if sag_matters(maps) else tension_of(maps.section)
+        return slice_panels(maps, (UTILISATION, other))
+
+    @chart
+    def of_family(self) -> str | None:
+        """Maps of what the configured family needs: diameter, tension, and what sag adds to it."""
+        from designer.report.figures.colours import DIAMETER, RATIO, tension_of
+        from designer.report.figures.sections import slice_panels
+
+        maps = self.source.maps
+        if maps is None:
+            return None
+        quantities = DIAMETER, tension_of(maps.section)
+        return slice_panels(maps, (*quantities, RATIO) if sag_matters(maps) else quantities)
+
+    @chart
+    def edge(self) -> str | None:
+        """The needed diameter from the centre of the region outward."""
+        from designer.report.figures.charts_edge import edge_chart
+
+        return None if self.source.maps is None else edge_chart(self.source.maps)
+
+    @chart
+    def served(self) -> str | None:
+        """The share of the poses over the diameter."""
+        from designer.report.figures.charts_shares import served_chart
+
+        return None if self.source.maps is None else served_chart(self.source.maps.served)
+
+    @chart
+    def verdicts(self) -> str | None:
+        """The samples by verdict; None for a single one, of which the words say enough."""
+        from designer.report.figures.charts_shares import parts, verdict_chart
+
+        workspace = self.analysis.workspace
+        if workspace is None or len(parts(workspace.census)) < 2:
+            return None
+        return verdict_chart(workspace.census)
+
+    @chart
+    def pareto(self) -> str | None:
+        """Every size that holds, by what sizes are compared by; None where one alone is left."""
+        from designer.report.figures.charts_selection import pareto_chart
+
+        selection = self.analysis.selection
+        if selection is None or len(selection.front) < 2:
+            return None
+        return pareto_chart(selection)
+
+    @chart
+    def grades(self) -> str | None:
+        """Sizes and need of each grade; None where no grade has a diameter that would do."""
+        from designer.report.figures.charts_selection import candidates_chart
+
+        selection = self.analysis.selection
+        if selection is None:
+            return None
+        outcomes = (*selection.outcomes, *selection.alternatives)
+        has_need = any(np.isfinite(outcome.continuous_diameter_m) for outcome in outcomes)
+        return candidates_chart(selection) if has_need else None
+
+    @scene
+    def layers(self) -> Image | None:
+        """The part of the region that each size of a grade serves; None where all serve alike."""
+        from designer.report.figures.scenes import usable_scene
+
+        selection, maps = self.analysis.selection, self.source.maps
+        usable = None if selection is None else selection.usable
+        if usable is None or not usable.differs or maps is None:
+            return None
+        return usable_scene(maps, usable)
+
+    @chart
+    def usable(self) -> str | None:
+        """The same as a curve, where there are no layers."""
+        from designer.report.figures.charts_shares import usable_chart
+
+        selection = self.analysis.selection
+        usable = None if selection is None else selection.usable
+        if selection is None or usable is None or not usable.differs or self.layers is not None:
+            return None
+        return usable_chart(usable, selection.chosen)

@@ -18,7 +18,6 @@ from designer.model.requirement import Requirement, State
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.design.checks import unmet_by_title
-from designer.report.design.proof import chosen_proof, proof_statement
 from designer.report.material_class import class_of
 from designer.report.phrases import lacking_loads, orientation_words
 from designer.selection.candidate import Candidate
@@ -129,6 +128,7 @@ def first_page(source: Source) -> Context:
         "chosen": analysis.assignment.rope,
         "need": analysis.most_needed,
         "groups": analysis.groups,
+        "maps": source.rope_maps or source.maps,
         "tight": _TIGHT,
         **_card(analysis),
         **_advice(analysis, findings),
@@ -261,7 +261,7 @@ def _other_grades(analysis: Analysis) -> list[str]:
 
 
 def _sureness(analysis: Analysis, findings: Findings) -> Context:
-    study, case = analysis.study, chosen_proof(analysis)
+    study, selection = analysis.study, analysis.selection
     ropes = _ropes(analysis)
     ids = dict.fromkeys(effect.id for effect in study.effects)
     idle = {effect.id for effect in study.known_effects.effects if _is_of_data(effect)}
@@ -273,7 +273,7 @@ def _sureness(analysis: Analysis, findings: Findings) -> Context:
         "idle_effects": [name for name in ids if name in idle],
         "rope_effects": rope_effects(study),
         "margin": _margin(analysis, findings),
-        "proved": None if case is None else proof_statement(case),
+        "proved": None if selection is None else selection.proof,
         "orientation": orientation_words(study),
         "long": LONG,
         "bending": _bending(study, ropes),

@@ -6,10 +6,8 @@ from collections.abc import Callable
 
 from designer.analysis.analyse import Analysis
 from designer.progress import SILENT, Reporter
-from designer.report.blocks import Report, Section
 from designer.report.control import control_of
 from designer.report.design import (
-    assumptions,
     carries,
     checks,
     contexts,
@@ -23,29 +21,28 @@ from designer.report.design.contexts import Context, shared
 from designer.report.design.first_page import first_page
 from designer.report.design.source import Source, source_of
 from designer.report.design.workshop import fabrication
+from designer.report.document import Report, Section
 
-SECTIONS: tuple[
-    tuple[str, Callable[[Source], Context | None]] | Callable[[Source], Section | None], ...
-] = (
+SECTIONS: tuple[tuple[str, Callable[[Source], Context | None]], ...] = (
     ("answer", first_page),
     ("inputs", contexts.inputs),
     ("checks", checks.requirements),
     ("carries", carries.sensitivities),
     ("uncertainty", contexts.uncertainty),
     ("load-cases", load_cases.load_cases),
-    workspace.section,
-    selection.section,
+    ("workspace", workspace.workspace),
+    ("selection", selection.selection),
     ("groups", groups.groups),
     ("stiffness", contexts.stiffness),
     ("clearance", contexts.clearance),
     ("workshop", fabrication),
     ("proof", contexts.proof),
     ("pose", pose.pose),
-    workspace.family,
+    ("family", workspace.family),
     ("verification", contexts.verification),
     ("left-out", contexts.left_out),
-    assumptions.section,
-    assumptions.nomenclature,
+    ("assumptions", contexts.assumptions),
+    ("nomenclature", contexts.nomenclature),
     ("provenance", contexts.provenance),
 )
 """Each section's id, as its template is called, and what gives the template its context.
@@ -56,7 +53,7 @@ None instead of a context where the study gives nothing for the section.
 
 def section(source: Source, section_id: str) -> Section | None:
     """Return a section by its id; None where the study gives nothing for it."""
-    context = dict(entry for entry in SECTIONS if isinstance(entry, tuple))[section_id](source)
+    context = dict(SECTIONS)[section_id](source)
     if context is None:
         return None
     kind = ""
@@ -65,20 +62,25 @@ def section(source: Source, section_id: str) -> Section | None:
     return Section(section_id, kind=kind, context={**shared(source), **context})
 
 
-def design_report(
-    analysis: Analysis, *, draws: bool = True, reporter: Reporter = SILENT
-) -> Report[None]:
+def design_report(analysis: Analysis, *, draws: bool = True, reporter: Reporter = SILENT) -> Report:
     """Return the report on an analysis; with ``draws`` false, without figures."""
     return report_from(source_of(analysis, draws=draws), reporter)
 
 
-def report_from(source: Source, reporter: Reporter = SILENT) -> Report[None]:
+def report_from(source: Source, reporter: Reporter = SILENT) -> Report:
     """Return the report from what its sections are made from."""
     analysis, sections = source.analysis, []
     with reporter.task("drawing", len(SECTIONS)) as advance:
-        for make in SECTIONS:
+        for section_id, _ in SECTIONS:
             advance(1)
-            sections.append(section(source, make[0]) if isinstance(make, tuple) else make(source))
-    about = "Cable design report", analysis.study, analysis.provenance
-    control = control_of(analysis.study, analysis.catalogue)
-    return Report.of("report", *about, None, sections, source.missing, control)
+            sections.append(section(source, section_id))
+    return Report.of(
+        "report",
+        analysis.study.name,
+        "Cable design report",
+        analysis.provenance.created,
+        sections,
+        version=analysis.provenance.version,
+        missing=source.missing,
+        control=control_of(analysis.study, analysis.catalogue),
+    )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from designer.arrays import FloatArray
 from designer.diagnosis.errors_of import Error, Interval, Stage
 from designer.diagnosis.result import Diagnosis
 from designer.model.measured_data import Noise
@@ -27,9 +28,20 @@ class Quantity:
         """Return its error at a stage; None where it was not measured."""
         return stage.length_m if self.name == "length" else stage.tension_N
 
+    def errors_of(self, stages: Iterable[Stage]) -> Iterator[tuple[str, Error]]:
+        """Yield label and error of each stage that has one."""
+        for stage in stages:
+            error = self.error_of(stage)
+            if error is not None:
+                yield stage.label, error
+
     def shown(self, value: float) -> str:
         """Return a value in SI units as text, without its unit."""
         return fmt.number(self.scale * value, 3)
+
+    def all_shown(self, values: FloatArray) -> list[str]:
+        """Return values in SI units as texts, without their unit."""
+        return [self.shown(float(value)) for value in values]
 
     def with_unit(self, value: float) -> str:
         """Return a value in SI units as text."""

@@ -2,68 +2,59 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from designer.analysis.provenance import Provenance
 from designer.diagnosis.result import Diagnosis
-from designer.report import format as fmt
-from designer.report.blocks import Box, Fact, Facts, Report, Section
 from designer.report.control import control_of
-from designer.report.design.provenance import facts_of
-from designer.report.diagnosis import (
-    assumptions,
-    data,
-    design,
-    errors,
-    found,
-    residual,
-    search,
-    unexplained,
-)
-from designer.report.diagnosis.first_page import FirstPage, first_page
+from designer.report.diagnosis import contexts
+from designer.report.diagnosis.contexts import Context, shared
+from designer.report.document import Report, Section
 from designer.report.render import write_pages
+from designer.report.templates import Statement, plain_statement
 
-SECTIONS = (
-    found.section,
-    errors.section,
-    residual.section,
-    unexplained.section,
-    search.section,
-    design.section,
-    data.section,
-    assumptions.section,
+SECTIONS: tuple[tuple[str, Callable[[Diagnosis], Context | None]], ...] = (
+    ("answer", contexts.first_page),
+    ("found", contexts.found),
+    ("errors", contexts.errors),
+    ("residual", contexts.residual),
+    ("unexplained", contexts.unexplained),
+    ("search", contexts.search),
+    ("design", contexts.design),
+    ("data", contexts.data),
+    ("assumptions", contexts.assumptions),
 )
-"""Each takes a `Diagnosis` and returns a section; None where there is nothing to say in it."""
+"""Each section's id, as its template is called, and what gives the template its context."""
 
 
-def diagnosis_report(diagnosis: Diagnosis, provenance: Provenance) -> Report[FirstPage]:
+def diagnosis_report(diagnosis: Diagnosis, provenance: Provenance) -> Report:
     """Return the report on a diagnosis."""
+    kinds = {"answer": "first-page", "assumptions": "keep"}
+    common = {**shared(diagnosis), "provenance": provenance}
+    given = [(key, context_of(diagnosis)) for key, context_of in SECTIONS]
     sections = (
-        Section("answer", "What was wrong", kind="first-page"),
-        *(make(diagnosis) for make in SECTIONS),
-        _provenance(diagnosis, provenance),
+        Section(key, kind=kinds.get(key, ""), context={**common, **context})
+        for key, context in (*given, ("provenance", {}))
+        if context is not None
     )
-    about = "Diagnosis of measured data", diagnosis.study, provenance
-    control = control_of(diagnosis.study)
-    return Report.of("diagnosis", *about, first_page(diagnosis), sections, control=control)
+    return Report.of(
+        "diagnosis",
+        diagnosis.study.name,
+        "Diagnosis of measured data",
+        provenance.created,
+        sections,
+        version=provenance.version,
+        control=control_of(diagnosis.study),
+    )
+
+
+def verdict(diagnosis: Diagnosis) -> Statement:
+    """Return the answer: what was found, that there is nothing to find, or what is unexplained."""
+    context = {**shared(diagnosis), **contexts.verdict(diagnosis)}
+    return plain_statement("diagnosis/verdict.html.j2", context)
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: Path, templates: Path | None = None) -> None:
     """Write ``diagnosis.html`` and ``diagnosis.pdf`` into an existing folder."""
     write_pages(diagnosis_report(diagnosis, Provenance.now()), folder, templates)
-
-
-def _provenance(diagnosis: Diagnosis, provenance: Provenance) -> Section:
-    measurements, steps = diagnosis.study.measurements, diagnosis.steps
-    measured: tuple[Fact, ...] = ()
-    if measurements is not None:
-        measured = (
-            Fact("Measured data", measurements.file.name),
-            Fact("SHA-256 of the data", diagnosis.measured.sha256),
-        )
-    facts = (
-        *facts_of(provenance, diagnosis.study, *measured),
-        Fact("Candidates", fmt.count(len(steps[0].trials) if steps else 0)),
-        Fact("Everything in numbers", "diagnosis.json", "beside this report"),
-    )
-    return Section.of("provenance", "Provenance", Box.of("loose", Facts(facts)))

@@ -1,4 +1,4 @@
-"""Effects, fitted values and chances in the words of the report."""
+"""Effects, fitted values and chances in words; filters of templates."""
 
 from __future__ import annotations
 
@@ -6,9 +6,13 @@ import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 
+from designer.arrays import IntArray
+from designer.diagnosis.errors_of import Interval
 from designer.diagnosis.result import Estimate, Finding
+from designer.diagnosis.search import EffectTrial
 from designer.effects.effect import Effect, Parameter
 from designer.report import format as fmt
+from designer.spelling import in_runs
 
 NO_BREAK = "\u00a0"
 _OF_A_CABLE = re.compile(r"(length|tension|direction|speed)_(\d+)(?:_(m|N|m_per_s))?")
@@ -28,6 +32,7 @@ _SUFFIX = re.compile(
 _SPELT = {"degC": "°C", "deg": "°", "percent": "%"}
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _NEGLIGIBLE = 1e-12
+_TO_95 = 1.96
 _CABLE = "the cable is {} than declared"
 _PAYLOAD = "the platform with its payload is {} than declared"
 _STREAM = "the length stream {} the pose stream"
@@ -91,10 +96,33 @@ def plain_finding(finding: Finding) -> str:
     return plain(finding.effect, {name: e.value for name, e in finding.parameters.items()})
 
 
-def values(effect: Effect, estimates: Mapping[str, Estimate]) -> str:
+def rivals_of(group: Sequence[Finding]) -> list[str]:
+    """Return the rivals of findings of one kind, each once."""
+    return [*dict.fromkeys(rival for finding in group for rival in finding.rivals)]
+
+
+def runs_of_rows(rows: IntArray) -> str:
+    """Return rows such as ``12, 45 to 48 and 60``."""
+    return fmt.listing(in_runs(rows))
+
+
+def fitted_values(effect: Effect, estimates: Mapping[str, Estimate]) -> str:
     """Return all fitted values such as ``radius = 119.8 ± 0.4 mm``."""
     shown = (f"{p.label} = {estimate(estimates[p.name], p.unit)}" for p in effect.parameters)
     return ", ".join(text.replace(" ", NO_BREAK) for text in shown)
+
+
+def trial_values(trial: EffectTrial) -> str:
+    """Return the values of the effect that was tried, fitted with those found before."""
+    stds = iter(trial.fit.std)  # of all parameters of all settings, in their order
+    for setting in trial.fit.settings:
+        estimates = {
+            name: Estimate(value, float(std))
+            for (name, value), std in zip(setting.values.items(), stds, strict=False)
+        }
+        if setting.effect.key == trial.effect.key:
+            return fitted_values(trial.effect, estimates)
+    return ""
 
 
 def covariate(name: str) -> str:
@@ -122,9 +150,9 @@ def _covariate(name: str) -> tuple[str, str]:
     return name, ""
 
 
-def estimate(item: Estimate, unit: str) -> str:
-    """Return a value with its standard deviation, to two digits of the latter."""
-    value, std = item.value, item.std
+def estimate(item: Estimate | float, unit: str) -> str:
+    """Return a value with its standard deviation, if it has one, to two digits of the latter."""
+    value, std = (item.value, item.std) if isinstance(item, Estimate) else (item, math.nan)
     if unit == "m" and abs(value) < 1.0:
         value, std, unit = 1e3 * value, 1e3 * std, "mm"
     size = max(abs(value), std if math.isfinite(std) else 0.0)
@@ -137,15 +165,21 @@ def estimate(item: Estimate, unit: str) -> str:
     return f"{text} {unit}".strip().replace(" ", NO_BREAK)
 
 
-def interval(item: Estimate, unit: str, width: float) -> str:
-    """Return a value plus and minus so many standard deviations."""
+def interval_95(item: Estimate, unit: str) -> str:
+    """Return the 95 % interval of a normal distribution about a value."""
     if not math.isfinite(item.std):
         return fmt.MISSING
-    ends = [item.value + sign * width * item.std for sign in (-1, 1)]
+    ends = [item.value + sign * _TO_95 * item.std for sign in (-1, 1)]
     return _range(ends, unit, abs(item.value))
 
 
-def plausible(parameter: Parameter) -> str:
+def with_interval(error: Interval, scale: float) -> str:
+    """Return an error with its interval, such as ``3.21 (2.9 to 3.6)``."""
+    value, low, high = (fmt.number(scale * x, 3) for x in (error.value, error.low, error.high))
+    return f"{value} ({low} to {high})"
+
+
+def plausible_range(parameter: Parameter) -> str:
     """Return the range that an engineer would believe."""
     return _range(parameter.plausible, parameter.unit, max(map(abs, parameter.plausible)))
 

@@ -11,7 +11,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.grades.grade import Grade
 from designer.report import format as fmt
-from designer.report.blocks import MOST_ROWS
+from designer.report.document import MOST_ROWS
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
 from designer.report.material_class import CLASSES, class_of

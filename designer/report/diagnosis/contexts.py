@@ -1,0 +1,208 @@
+"""What the templates of a diagnosis get: numbers and domain objects; None for no section.
+
+Beside it every template of a diagnosis gets `shared`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+
+import numpy as np
+
+from designer.diagnosis.errors_of import Interval
+from designer.diagnosis.free_poses import TAKEN_UP
+from designer.diagnosis.result import MOST_SCATTER, Diagnosis, Finding
+from designer.diagnosis.search import EffectTrial
+from designer.diagnosis.statistics import SIGNIFICANCE
+from designer.report import format as fmt
+from designer.report.diagnosis.drawings import Drawings
+from designer.report.diagnosis.quantity import quantities
+from designer.report.diagnosis.words import grouped
+from designer.report.document import MOST_ROWS
+
+Context = Mapping[str, object]
+
+_ABOUT_AS_FAR = 0.9
+_MOST_CARRIERS = 6
+_MOST_OUTLIERS = 30
+_MOST_TRIALS = 6
+
+
+def shared(diagnosis: Diagnosis) -> Context:
+    """Return what every template gets: results, what was measured, groups of findings, figures."""
+    return {
+        "diagnosis": diagnosis,
+        "quantities": list(quantities(diagnosis)),
+        "groups": grouped(diagnosis.findings),
+        "drawings": Drawings(diagnosis),
+        "significance": SIGNIFICANCE,
+        "most_rows": MOST_ROWS,
+    }
+
+
+def verdict(diagnosis: Diagnosis) -> Context:
+    """The answer in one or two sentences."""
+    before, after = diagnosis.foretold_before, diagnosis.foretold_after
+    improves = (  # else nothing that concerns lengths was found
+        before is not None
+        and after is not None
+        and after.position_m.value <= _ABOUT_AS_FAR * before.position_m.value
+    )
+    return {
+        "doubtful": any(f.rivals or f.warnings for f in diagnosis.findings),
+        "foretold": (before, after) if improves else None,
+    }
+
+
+def first_page(diagnosis: Diagnosis) -> Context:
+    """The answer, and how sure it is."""
+    findings, not_tried = diagnosis.findings, diagnosis.not_tried
+    alone = [
+        f
+        for f in findings
+        if not f.rivals
+        and not any(what.startswith(f"rivals of {f.effect.key}:") for what in not_tried)
+    ]
+    scatter = max(diagnosis.scatter.values(), default=0.0)
+    return {
+        **verdict(diagnosis),
+        "hidden": [key for key, why in diagnosis.skipped if why.startswith(TAKEN_UP)],
+        "significances": [_significance(diagnosis, group) for group in grouped(findings)],
+        "without_rivals": grouped(alone),
+        "scatter": scatter if scatter > MOST_SCATTER else None,
+    }
+
+
+def _significance(diagnosis: Diagnosis, group: Iterable[Finding]) -> Context:
+    trials = [_trial_of(diagnosis, finding) for finding in group]
+    gains = [f for f in group if math.isfinite(f.heldout_gain)]
+    return {
+        "group": group,
+        "chance": max((trial.chance for trial in trials if trial is not None), default=None),
+        "gains": [
+            f"{fmt.percent(f.heldout_gain, 3)} ± {fmt.percent(f.heldout_gain_std, 2)}"
+            for f in gains
+        ],
+    }
+
+
+def _trial_of(diagnosis: Diagnosis, finding: Finding) -> EffectTrial | None:
+    """Return the trial in which an effect was found; None where it came by exchange."""
+    key = finding.effect.key
+    for step in diagnosis.steps:
+        if step.added is not None and step.added.key == key:
+            return next(t for t in step.trials if t.effect.key == key)
+    return None
+
+
+def found(diagnosis: Diagnosis) -> Context | None:
+    """What was found; None where nothing was, and nothing withdrawn."""
+    return {} if diagnosis.findings or diagnosis.withdrawn else None
+
+
+def errors(diagnosis: Diagnosis) -> Context:
+    """The errors at each stage."""
+    before, after = diagnosis.foretold_before, diagnosis.foretold_after
+    foretold: list[tuple[str, float, Interval, Interval]] = []
+    unsolved = 0
+    if before is not None and after is not None:
+        rows = (
+            ("Position of the platform [mm]", 1e3, before.position_m, after.position_m),
+            ("Its orientation [mrad]", 1e3, before.turn_rad, after.turn_rad),
+            ("Tensions at the winches [N]", 1.0, before.tension_N, after.tension_N),
+        )
+        foretold = [
+            (name, scale, was, now)
+            for name, scale, was, now in rows
+            if was is not None and now is not None
+        ]
+        unsolved = max(stage.n_rows - stage.n_solved for stage in (before, after))
+    n_cables = diagnosis.machine.robot.n_cables
+    prefix = "Cable " if n_cables < 5 else ""
+    return {
+        "foretold": foretold,
+        "unsolved": unsolved,
+        "cable_heads": [(f"{prefix}{k}", "") for k in range(1, n_cables + 1)],
+    }
+
+
+def residual(diagnosis: Diagnosis) -> Context:
+    """What the residual goes with, and the residual itself."""
+    before = {c.name: c for c in diagnosis.structure_before.carriers}
+    after = {c.name: c for c in diagnosis.structure_after.carriers}
+    stages = (before, after) if diagnosis.findings else (after, after)
+    names = dict.fromkeys(n for pair in zip(before, after, strict=False) for n in pair)
+    residuals = diagnosis.residual_before, diagnosis.residual_after
+    return {
+        "carriers": [(name, *(stage.get(name) for stage in stages)) for name in names],
+        "within": [float(np.mean(np.abs(r[np.isfinite(r)]) < 2.0)) for r in residuals],
+    }
+
+
+def unexplained(diagnosis: Diagnosis) -> Context | None:
+    """What is left unexplained; None where nothing is."""
+    return {"most_carriers": _MOST_CARRIERS} if diagnosis.is_unexplained else None
+
+
+def search(diagnosis: Diagnosis) -> Context:
+    """The best candidates of each round, and what became of them."""
+    return {
+        "found": {finding.effect.key for finding in diagnosis.findings},
+        "withdrawn": {gone.effect for gone in diagnosis.withdrawn},
+        "most_trials": _MOST_TRIALS,
+    }
+
+
+def design(diagnosis: Diagnosis) -> Context:
+    """What the better model does to the design, and the effects for the config."""
+    uses = (
+        ("After", "the one chosen before", diagnosis.kept),
+        ("Before", "on the machine", diagnosis.mounted_before),
+        ("After", "on the machine", diagnosis.mounted_after),
+    )
+    return {
+        "config": f"{diagnosis.study.source.path.stem}.diagnosed.yaml",
+        "effects": _effects_text(diagnosis),
+        "changes": list(_changes(diagnosis)),
+        "uses": [use for use in uses if use[2] is not None],
+    }
+
+
+def _changes(diagnosis: Diagnosis) -> Iterator[float]:
+    """Yield the relative change of each figure of the design; NaN where there is none."""
+    before, after = diagnosis.design_before, diagnosis.design_after
+    if before is None or after is None:
+        return
+    names = ("diameter_m", "max_tension_N", "utilisation", "optimum_m", "optimum_tension_N")
+    for name in names:
+        ratio = getattr(after, name) / getattr(before, name)
+        yield ratio - 1.0 if math.isfinite(ratio) else math.nan
+
+
+def _effects_text(diagnosis: Diagnosis) -> str:
+    """Return the block ``effects`` as YAML; empty where there are none."""
+    from designer.diagnosis.as_json import effects_table
+    from designer.diagnosis.design import declared_by
+    from designer.documents.edits import block
+
+    table = effects_table(declared_by(diagnosis))
+    return f"{block({'effects': table})}\n" if table else ""
+
+
+def data(diagnosis: Diagnosis) -> Context:
+    """What was measured, what stands off, and what these data cannot show."""
+    left, balance = diagnosis.imbalance, None
+    if left is not None and not np.isnan(left).all():
+        balance = float(np.nanmedian(left)), float(np.nanmax(left))
+    return {
+        "n_heldout": int(diagnosis.heldout.sum()),
+        "imbalance": balance,
+        "outliers": sorted(diagnosis.outliers, key=lambda outlier: -abs(outlier.size)),
+        "most_outliers": _MOST_OUTLIERS,
+    }
+
+
+def assumptions(_: Diagnosis) -> Context:
+    """What the diagnosis rests on."""
+    return {}
