@@ -185,7 +185,7 @@ class Drawings:
 
     @chart
     def of_ropes(self) -> str | None:
-        """Maps of the utilisation of the ropes of the answer, and of the tension or what sag adds."""
+        """Maps of the utilisation of the ropes of the answer, and of tension or what sag adds."""
         from designer.report.figures.colours import RATIO, UTILISATION, tension_of
         from designer.report.figures.sections import slice_panels
 
