@@ -134,7 +134,11 @@ def test_forces_of_one_table_row_have_one_unit(analyses: dict[str, Analysis]) ->
     weak = replace(chosen.verification, max_tension_N=20.5)
     small = replace(chosen, verification=weak)
     outcomes = tuple(
-        replace(o, candidates=tuple(small if c is chosen else c for c in o.candidates))
+        replace(
+            o,
+            candidates=tuple(small if c is chosen else c for c in o.candidates),
+            best=small if o.best is chosen else o.best,
+        )
         for o in selection.outcomes
     )
     for shown in (selection, replace(selection, outcomes=outcomes, chosen=small)):
