@@ -258,7 +258,7 @@ class Files(QObject):
         name, _ = QFileDialog.getSaveFileName(self._parent, title, start, kinds, options=options)
         if not name:
             return
-        target = Path(name).with_suffix(Path(ending).suffix) if kinds else Path(name)
+        target = Path(name).with_suffix(Path(start).suffix) if kinds else Path(name)
         if content == "picture":
             is_saved = scene.grab().save(str(target))
             said = f"Saved {target}" if is_saved else f"{target}: cannot be written"
