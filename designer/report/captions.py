@@ -9,7 +9,7 @@ from designer.analysis.maps import Served, WorkspaceMaps
 from designer.report import format as fmt
 from designer.report.figures.colours import DIAMETER, RATIO
 
-_LITTLE = 0.02
+LITTLE = 0.02
 """A share by which sag may change a tension without a figure of that being worth its place."""
 _NEAR = 0.005
 """A distance from the edge, over that of the region, that is none."""
@@ -47,7 +47,7 @@ def largest_change(maps: WorkspaceMaps) -> float:
 
 def sag_matters(maps: WorkspaceMaps) -> bool:
     """Return whether a map of the effect of sag on the tension is worth its place."""
-    return largest_change(maps) > _LITTLE
+    return largest_change(maps) > LITTLE
 
 
 def ends_of_holding(profile: EdgeProfile) -> tuple[float | None, float | None]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from designer.errors import Fault, InputError
 from designer.io.output import output_folder, write_whole
 from designer.io.results import write_results
-from designer.progress import SILENT, Reporter
+from designer.progress import SILENT, Advance, Reporter
 from designer.report.design.report import design_report
 from designer.report.document import Report, Section
 from designer.report.fonts import with_fonts
@@ -27,11 +27,18 @@ REPORT_FILES = ("report.html", "report.pdf", "result.json", "candidates.csv", "w
 """What `designer report` writes; the last two only where the study asks for them."""
 
 
-def render_html(report: Report, *, paged: bool = False, user_folder: Path | None = None) -> str:
+def render_html(
+    report: Report,
+    *,
+    paged: bool = False,
+    user_folder: Path | None = None,
+    advance: Advance = lambda _: None,
+) -> str:
     """Return a report as one self-contained HTML page.
 
     With ``paged`` it is meant for paper: without scenes to turn. For ``user_folder`` see
-    `designer.report.templates`.
+    `designer.report.templates`. ``advance`` is called after each section: its figures are drawn
+    when its template first asks for them.
 
     Raises
     ------
@@ -39,11 +46,12 @@ def render_html(report: Report, *, paged: bool = False, user_folder: Path | None
         If a template of the user is faulty.
     """
     templates = environment(user_folder)
-    sections = tuple(
-        rendered(section, report, templates, paged=paged) for section in report.sections
-    )
+    sections = []
+    for section in report.sections:
+        sections.append(rendered(section, report, templates, paged=paged))
+        advance(1)
     page = templates.get_template("page.html.j2")
-    return with_fonts(page.render(report=replace(report, sections=sections), paged=paged))
+    return with_fonts(page.render(report=replace(report, sections=tuple(sections)), paged=paged))
 
 
 def rendered(
@@ -130,7 +138,7 @@ def write_report_pages(
     reporter: Reporter = SILENT,
 ) -> None:
     """Write ``report.html`` and ``report.pdf`` into an existing folder."""
-    write_pages(design_report(analysis, reporter=reporter), folder, templates, reporter)
+    write_pages(design_report(analysis), folder, templates, reporter)
 
 
 def write_pages(
@@ -150,12 +158,12 @@ def write_pages(
     InputError
         If a template of the user is faulty, or loads anything into its page.
     """
-    with reporter.task("pages", 2) as advance:
+    with reporter.task("pages", 2 * len(report.sections) + 1) as advance:
         with told_in_one_line(templates):
             pages = [
-                render_html(report, paged=paged, user_folder=templates) for paged in (False, True)
+                render_html(report, paged=paged, user_folder=templates, advance=advance)
+                for paged in (False, True)
             ]
-        advance(1)
         try:
             pdf = b"" if why_no_pdf() else render_pdf(pages[1])
         except ValueError as error:

@@ -140,6 +140,12 @@ def test_rendering_again_gives_the_same(report: Report) -> None:
     assert render_pdf(html) == render_pdf(html)
 
 
+def test_progress_advances_with_each_section(report: Report) -> None:
+    steps: list[int] = []
+    render_html(report, advance=steps.append)
+    assert steps == [1] * len(report.sections)
+
+
 def test_pdf_is_on_a4_with_numbered_pages(pdf: pypdf.PdfReader) -> None:
     total = len(pdf.pages)
     assert 6 <= total <= 12

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.report import format as fmt
-from designer.report.captions import sag_matters
+from designer.report.captions import LITTLE, sag_matters
 from designer.report.design.carries import STEP_M, shares_of_inputs, slopes_of_moves
 from designer.report.design.pose import weight_effect
 from designer.report.odds import INPUT_NAMES
@@ -18,10 +18,6 @@ from designer.report.pictures import Drawing, in_space, vector
 if TYPE_CHECKING:
     from designer.report.design.source import Source
     from designer.report.figures.stage import Image
-
-
-_LITTLE = 0.02
-"""A share by which sag may change a tension without a figure of that being worth its place."""
 
 
 def chart(draw: Callable[[Drawings], str | None]) -> cached_property[Drawing | None]:
@@ -153,7 +149,7 @@ class Drawings:
         if pose is None or not pose.loop.iterates:
             return None
         effect = weight_effect(pose)
-        if effect is not None and pose.loop.has_converged and abs(effect) < _LITTLE:
+        if effect is not None and pose.loop.has_converged and abs(effect) < LITTLE:
             return None
         return loop_chart(pose)
 

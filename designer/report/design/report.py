@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from designer.analysis.analyse import Analysis
-from designer.progress import SILENT, Reporter
 from designer.report.control import control_of
 from designer.report.design import (
     carries,
@@ -62,24 +61,20 @@ def section(source: Source, section_id: str) -> Section | None:
     return Section(section_id, kind=kind, context={**shared(source), **context})
 
 
-def design_report(analysis: Analysis, *, draws: bool = True, reporter: Reporter = SILENT) -> Report:
+def design_report(analysis: Analysis, *, draws: bool = True) -> Report:
     """Return the report on an analysis; with ``draws`` false, without figures."""
-    return report_from(source_of(analysis, draws=draws), reporter)
+    return report_from(source_of(analysis, draws=draws))
 
 
-def report_from(source: Source, reporter: Reporter = SILENT) -> Report:
+def report_from(source: Source) -> Report:
     """Return the report from what its sections are made from."""
-    analysis, sections = source.analysis, []
-    with reporter.task("drawing", len(SECTIONS)) as advance:
-        for section_id, _ in SECTIONS:
-            advance(1)
-            sections.append(section(source, section_id))
+    analysis = source.analysis
     return Report.of(
         "report",
         analysis.study.name,
         "Cable design report",
         analysis.provenance.created,
-        sections,
+        (section(source, section_id) for section_id, _ in SECTIONS),
         version=analysis.provenance.version,
         missing=source.missing,
         control=control_of(analysis.study, analysis.catalogue),
