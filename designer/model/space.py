@@ -83,6 +83,11 @@ def named_turn(place: FloatArray, name: str = "rotation_vector") -> dict[str, Fl
     return {name: turn} if turn.any() else {}
 
 
+def named_pose(place: FloatArray) -> dict[str, FloatArray]:
+    """Return a place as files of results name it, with its orientation where it is turned."""
+    return {**named_position(place), **named_turn(place)}
+
+
 def named_position(place: FloatArray) -> dict[str, FloatArray]:
     """Return a place (n_coordinates,) as files of results name its position."""
     return {"pose": place[:3]}

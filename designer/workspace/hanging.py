@@ -11,7 +11,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
-from designer.model.space import named_turn
+from designer.model.space import named_pose
 from designer.model.workspace import Workspace
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.task import LONG
@@ -46,8 +46,7 @@ def _named(name: str, extreme: str) -> dict[str, Any]:
     def named(worst: Hanging | None) -> dict[str, Any]:
         if worst is None:
             return {name: {"samples": 0}}
-        place = np.array(worst.place)
-        pose = {"pose": place[:3], **named_turn(place)}
+        pose = named_pose(np.array(worst.place))
         return {
             name: {"samples": worst.samples, extreme: worst.extreme, "cable": worst.cable, **pose}
         }

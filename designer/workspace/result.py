@@ -10,17 +10,13 @@ from typing import TYPE_CHECKING, ClassVar
 from designer.arrays import FloatArray
 from designer.documents.plain import record
 from designer.model.robot import Poses
-from designer.model.space import named_turn, turn_of
+from designer.model.space import named_pose, named_turn, turn_of
 from designer.model.verdict import Verdict
 from designer.workspace.hanging import HangingCables
 from designer.workspace.store import open_sweep
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-def _named_place(place: FloatArray) -> dict[str, FloatArray]:
-    return {"pose": place[:3], **named_turn(place)}
 
 
 def _named_example(place: FloatArray | None) -> dict[str, FloatArray | None]:
@@ -43,7 +39,7 @@ class Extreme:
         The largest tension there [N].
     """
 
-    place: FloatArray = field(metadata={"json": _named_place})
+    place: FloatArray = field(metadata={"json": named_pose})
     diameter_m: float
     max_tension_N: float
 

@@ -24,9 +24,12 @@ from designer.report.document import MOST_ROWS
 Context = Mapping[str, object]
 
 _ABOUT_AS_FAR = 0.9
+"""Share of the earlier error of position above which a model is no better to a reader."""
 _MOST_CARRIERS = 6
-_MOST_OUTLIERS = 30
 _MOST_TRIALS = 6
+"""As many rows as leave the table beside its text on one page; the JSON has all."""
+_MOST_OUTLIERS = 30
+"""Half a page."""
 
 
 def shared(diagnosis: Diagnosis) -> Context:

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from designer.report.figures.diagnosis import Layout
 
 _MOST = 4
+"""Panels side by side that are still wide enough to be read."""
 _MOST_ON_FIRST_PAGE = 3
+"""The same, in the panel of the first page."""
 
 
 class Drawings:
