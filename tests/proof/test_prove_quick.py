@@ -11,6 +11,8 @@ from designer.model.cable import Cable, Material
 from designer.model.prism import Prism
 from designer.model.robot import Poses, Robot
 from designer.model.space import Orientations, Space
+from designer.proof.cover import covers_of
+from designer.proof.encloser import Encloser
 from designer.proof.prove import Budget, prove
 from designer.statics.inverse import solve_sagging
 
@@ -44,3 +46,19 @@ def test_a_rope_that_fails_somewhere_is_refuted(fast_robot: Robot, steel: Materi
     assert proof.status == "refuted"
     assert proof.found > 1.0
     assert proof.bound > 1.0
+
+
+def test_no_pose_of_a_box_exceeds_its_bound(fast_robot: Robot, steel: Material) -> None:
+    """Boxes of all shapes, so that each end of distance and drop is that of the bound in some."""
+    cable, rng = steel.cable(0.06), np.random.default_rng(1)
+    (cover,) = covers_of(PART)
+    encloser = Encloser(fast_robot, cable, cover)
+    extent = (cover.high - cover.low)[0] * 10.0 ** rng.uniform(-2.0, 0.0, (60, 3))
+    low = cover.low[0] + rng.random((60, 3)) * ((cover.high - cover.low)[0] - extent)
+    bound = encloser.bound(low, low + extent, np.ones(60), np.inf).bound
+    fractions = np.concatenate([rng.random((200, 3)), list(np.ndindex(2, 2, 2))])
+    places = cover.places((low[:, None] + fractions * extent[:, None]).reshape(-1, 3))
+    used = encloser.utilisation(places).reshape(60, -1).max(axis=1)
+    assert np.isfinite(bound).mean() > 0.8
+    assert (used <= bound * (1.0 + 1e-12)).all()
+    assert (bound / used)[extent.max(axis=1) < 2.0].max() < 1.05
