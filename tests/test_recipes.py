@@ -3,11 +3,30 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
 
 import designer
+from designer.analysis.analyse import Analysis
+from designer.analysis.result_json import result_dict
+from designer.arrays import FloatArray
+from designer.explore.ropes import full_ropes
+from designer.explore.session import Session
+from designer.model.load_case import Loaded
+from designer.model.requirement import Answer
+from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
+from designer.model.workspace import Workspace
+from designer.plugins.find import find_plugins
+from designer.report.design.report import design_report
 from designer.report.figures.charts_shares import parts
+from designer.report.render import render_html
+from designer.selection import criteria
+from designer.statics.inverse import Statics
 from designer.workspace.result import Census
 
 
@@ -36,3 +55,67 @@ def test_verdicts_are_listed_only_where_they_are_defined() -> None:
         if sum(ast.unparse(part).startswith("Verdict.") for part in ast.iter_child_nodes(node)) > 2
     ]
     assert listed == []
+
+
+LARGEST_FLEET_ANGLE_DEG = 20.0
+
+
+def fleet_angle_deg(robot: Robot, poses: Poses) -> FloatArray:
+    """Angle in plan of each cable (..., n_cables) to a drum that faces the origin [deg]."""
+    exits = robot.exit_points_m[:, :2]
+    cables = poses.attachment_points_m(robot)[..., :2] - exits
+    axis, across = -exits, np.stack([exits[:, 1], -exits[:, 0]], axis=-1)
+    return np.degrees(
+        np.arctan2(np.abs((cables * across).sum(axis=-1)), (cables * axis).sum(axis=-1))
+    )
+
+
+@pytest.mark.slow
+def test_a_requirement_is_asked_wherever_the_others_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A fleet angle, by the steps of the recipe."""
+    asked_before = criteria._of_workspace
+
+    def asked(workspace: Workspace) -> Iterator[criteria.Criterion]:
+        yield from asked_before(workspace)
+
+        def quantity(_: Loaded, statics: Statics) -> FloatArray:
+            return fleet_angle_deg(statics.robot, statics.poses)
+
+        yield criteria.Criterion(
+            id="fleet_angle",
+            title="Fleet angle",
+            formula="angle of a cable to its drum ≤ what spools evenly",
+            source=f"a test; {criteria.WHERE}",
+            unit="deg",
+            quantity=quantity,
+            limits=(LARGEST_FLEET_ANGLE_DEG,),
+            kind="at_most",
+        )
+
+    monkeypatch.setattr(criteria, "_of_workspace", asked)
+    session = Session.example("yard", find_plugins(with_plugins=False))
+    session.edit("workspace.samples", "500")
+    session.edit("workspace.proof", "0 s")
+    question = session.question()
+    assert question is not None
+    analysis = Analysis.begin(question.study, question.catalogue)
+    (fleet,) = (each for each in analysis.requirements if each.id == "fleet_angle")
+    workspace = question.study.workspace
+    assert workspace is not None
+    inside = workspace.region.inside_m(np.random.default_rng(20261125), 50_000)
+    dense = fleet_angle_deg(question.study.robot, Poses.at(inside))
+    assert fleet.place is not None and fleet.cable is not None
+    at_place = fleet_angle_deg(question.study.robot, Poses.at(fleet.place))
+    assert fleet.demand == pytest.approx(at_place[fleet.cable - 1])
+    assert dense.max() <= fleet.demand <= dense.max() * 1.02  # nothing dense goes into corners
+    # No rope meets it: the answer, each file and each page follow.
+    assert analysis.answer is Answer.NO
+    reasons: Any = result_dict(analysis)["answer"]
+    assert "fleet_angle" in str(reasons)
+    html = render_html(design_report(analysis))
+    assert html.count("Fleet angle") > 1
+    shown = full_ropes(question)
+    assert shown.answer is Answer.NO
+    assert [each.words for each in shown.requirements] == [
+        each.words for each in analysis.requirements
+    ]
