@@ -83,15 +83,12 @@ def _print_summary(optimum: Optimum) -> None:
     from rich.markup import escape
 
     from designer.cli.terminal import bare_table, show
-    from designer.report.optimum import headline, trust_lines
+    from designer.report.optimum import headline, trust_lines, variable_rows
 
     show(headline(optimum), markup=False)
     table = bare_table("", "given", "optimised", "bounds")
-    for variable, value in zip(optimum.plan.variables, optimum.best.values, strict=True):
-        ends = [f"{x:g} {variable.unit}".rstrip() for x in (variable.low, variable.high)]
-        before = "" if variable.given is None else f"{variable.given:g} {variable.unit}".rstrip()
-        now = f"{value:g} {variable.unit}".rstrip()
-        table.add_row(*map(escape, (variable.name, before, now, " to ".join(ends))))
+    for row in variable_rows(optimum):
+        table.add_row(*map(escape, row))
     show(table)
     for line in trust_lines(optimum):
         show(line, markup=False)

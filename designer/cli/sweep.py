@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -53,16 +52,16 @@ def sweep(
     from designer.report.sweep import write_sweep
     from designer.sweep import run as running
     from designer.sweep.plan import read_sweep
-    from designer.sweep.store import opened, read_store
+    from designer.sweep.store import opened, read_store, report_folder
 
     laid_out, base = read_sweep(plan, with_plugins=not no_plugins)
     print_left_out(base.catalogue().problems)
     path = output or Path(f"{plan.stem}.zarr")
-    count = workers or len(os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else "1")
+    count = workers or running.processor_count()
     make = running.processes(count)
     if cluster:
         make, count = running.cluster(cluster)
-    folder = path.with_name(f"{path.stem}-report")
+    folder = report_folder(path)
     with output_folder(folder) as building:  # made first: what is in its way shows before the work
         with opened(path, laid_out) as store, ProgressBars() as bars:
             before = laid_out.n_points - sum(map(len, store.pending()))

@@ -7,6 +7,7 @@ stop. It stays for the next such work, since starting takes a second or two.
 
 from __future__ import annotations
 
+import atexit
 import threading
 from collections.abc import Callable
 from multiprocessing import Pipe
@@ -143,8 +144,9 @@ class Helper:
                 raise EOFError  # given up before it began
             if self._process is None or self._connection is None or not self._process.is_alive():
                 self._connection, theirs = Pipe()
-                process = SPAWN.Process(target=work, args=(theirs,), daemon=True)
+                process = SPAWN.Process(target=work, args=(theirs,))  # no daemon: a sweep has pools
                 process.start()
+                atexit.register(process.terminate)
                 theirs.close()
                 self._process = process
             return self._connection

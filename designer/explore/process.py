@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -14,7 +15,7 @@ from designer.effects.load import load_effects
 from designer.errors import InputError
 from designer.explore.question import Question
 from designer.explore.reading import Context
-from designer.explore.requests import ThrottledReporter, failure_text
+from designer.explore.requests import Long, ThrottledReporter, failure_text
 from designer.io.process import end_with_parent, settle_in
 from designer.plugins.find import find_plugins
 
@@ -42,14 +43,17 @@ def work(connection: Connection) -> None:
 def _answer(task: dict[str, Any], reporter: ThrottledReporter) -> Any:
     from designer.explore.export import export
     from designer.explore.measurements import diagnosis_answer
+    from designer.explore.plans import optimised_study, sweep_study
     from designer.explore.ropes import full_ropes
 
-    question = _question(task)
-    if task["kind"] == "select":
-        return full_ropes(question, reporter)
-    if task["kind"] == "diagnose":
-        return diagnosis_answer(question, reporter)
-    return export(question, reporter, **task["options"])
+    answers: dict[Long, Callable[..., Any]] = {
+        "select": full_ropes,
+        "diagnose": diagnosis_answer,
+        "export": export,
+        "optimise": optimised_study,
+        "sweep": sweep_study,
+    }
+    return answers[task["kind"]](_question(task), reporter, **task["options"])
 
 
 def _question(task: dict[str, Any]) -> Question:

@@ -14,7 +14,7 @@ from designer.explore.question import Question
 from designer.progress import Advance
 
 Quick = Literal["here", "coarse", "fine", "ropes", "residuals", "worst"]
-Long = Literal["select", "diagnose", "export"]
+Long = Literal["select", "diagnose", "export", "optimise", "sweep"]
 Kind = Quick | Long
 Status = Literal["progress", "done", "failed", "cancelled"]
 _REPORT_EVERY_S = 0.1

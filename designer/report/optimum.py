@@ -83,6 +83,18 @@ def trust_lines(optimum: Optimum) -> list[str]:
     return [line.unescape() for line in paragraphs(_sentence(optimum, "reliability"))]
 
 
+def variable_rows(optimum: Optimum) -> list[tuple[str, str, str, str]]:
+    """Return of each variable its name, given and optimised value, and bounds; "" for no value."""
+    rows = []
+    for variable, best in zip(optimum.plan.variables, optimum.best.values, strict=True):
+        given, chosen, low, high = (
+            "" if value is None else f"{value:g} {variable.unit}".rstrip()
+            for value in (variable.given, best, variable.low, variable.high)
+        )
+        rows.append((variable.name, given, chosen, f"{low} to {high}"))
+    return rows
+
+
 def _sentence(optimum: Optimum, macro: str) -> Markup:
     template = environment().get_template("optimise/sentences.html.j2")
     return Markup(vars(template.make_module({"optimum": optimum}))[macro]())

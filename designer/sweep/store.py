@@ -155,6 +155,11 @@ def _lay_out(path: Path, plan: SweepPlan) -> None:
         shutil.rmtree(unfinished, ignore_errors=True)
 
 
+def report_folder(path: Path) -> Path:
+    """Return where the pages on a store go: beside it."""
+    return path.with_name(f"{path.stem}-report")
+
+
 def read_store(path: Path) -> xr.Dataset:
     """Return a store's points, one variable for each field and result, along ``point``."""
     import xarray as xr

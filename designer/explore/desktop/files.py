@@ -1,4 +1,4 @@
-"""Files of the window: studies opened, saved and left, robots imported, and what is exported.
+"""Files of the window: studies opened, saved and left, robots imported, plans, and exports.
 
 What is not saved is asked about, never lost.
 """
@@ -16,6 +16,7 @@ from designer.errors import DesignerError
 from designer.explore.desktop.live_session import LONG, NAMES, LiveSession
 from designer.explore.desktop.settings import Settings
 from designer.explore.export import Exported, What
+from designer.explore.plans import OptimisedStudy
 from designer.explore.session import Session
 from designer.plugins.find import Plugins
 from designer.report import format as fmt
@@ -23,6 +24,7 @@ from designer.resources import example_file, example_names
 
 _STUDIES = "Studies (*.yaml *.yml);;All files (*)"
 _ROBOTS = "Robots of CASPR and WireX (*.xml *.wcrfx);;All files (*)"
+_PLANS = "Plans (*.yaml *.yml);;All files (*)"
 _STARTER = "fast"
 """The study that has a comment to every field; `designer init` starts with it as well."""
 _EXPORTS: dict[What, tuple[str, str, str]] = {
@@ -64,10 +66,12 @@ class Files(QObject):
         self._plugins, self._settings = plugins, settings
         self._disk = "same"
         self._exported: Exported | None = None
+        self._optimised: OptimisedStudy | None = None
         self.watch = QTimer(self, interval=_DISK_MS)
         self.watch.timeout.connect(self.look_at_disk)
         self.watch.start()
-        live.listen(self._show_exported, "export")
+        live.listen(self._show_exported, "export", "sweep")
+        live.listen(self._show_optimised, "optimise")
 
     # Studies
 
@@ -242,8 +246,60 @@ class Files(QObject):
             self.reload()
         elif button == "Save":
             self.save()
+        elif button == "Take over":
+            self._take_over_optimised()
         elif button == "Open" and self._exported is not None:
             QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._exported.files[0])))
+
+    # Plans
+
+    def optimise(self) -> None:
+        """Ask for a plan, and search for a better design of the study."""
+        plan = self._asked_for_plan("Plan of an optimisation")
+        if plan is not None:
+            self._live.begin_long("optimise", plan=plan)
+
+    def sweep(self) -> None:
+        """Ask for a plan and where its store is to be, and solve the study for all its values."""
+        plan = self._asked_for_plan("Plan of a sweep")
+        if plan is None:
+            return
+        start, option = str(plan.with_suffix(".zarr").resolve()), QFileDialog.Option.ShowDirsOnly
+        title = "Store of the sweep"
+        name, _ = QFileDialog.getSaveFileName(self._parent, title, start, "", options=option)
+        if name:
+            self._live.begin_long("sweep", plan=plan, target=Path(name))
+
+    def _asked_for_plan(self, title: str) -> Path | None:
+        session = self._live.session
+        if session is None:
+            return None
+        start = str(session.path.resolve().parent)
+        name, _ = QFileDialog.getOpenFileName(self._parent, title, start, _PLANS)
+        return Path(name) if name else None
+
+    def _show_optimised(self, optimised: OptimisedStudy | None) -> None:
+        """Say what the search came to, and offer the better design."""
+        self._optimised = optimised
+        if optimised is None:
+            return
+        lines = optimised.headline, *optimised.variables, *optimised.trust
+        self._live.message.emit("\n".join(lines))
+        if optimised.text is None:
+            self.notice.emit(optimised.headline, ("Close",))
+        else:
+            chosen = "; ".join(optimised.variables)
+            self.notice.emit(f"{optimised.headline}. {chosen}", ("Take over", "Close"))
+
+    def _take_over_optimised(self) -> None:
+        """Go on with the better design; what was changed since the search began is told of."""
+        optimised, session = self._optimised, self._live.session
+        if session is None or optimised is None or optimised.text is None:
+            return
+        if session.text != optimised.given_text:
+            text = "Changes made since the search began are not in this design; undo has them."
+            self._live.message.emit(text)
+        self._live.take_over(optimised.text)
 
     # Exports
 

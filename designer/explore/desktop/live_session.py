@@ -44,6 +44,8 @@ NAMES: dict[str, str] = {
     "residuals": "the residuals",
     "diagnose": "the diagnosis",
     "export": "the export",
+    "optimise": "the optimisation",
+    "sweep": "the sweep",
 }
 """As a user reads of them."""
 
@@ -69,6 +71,8 @@ class LiveSession(QObject):
     """The map is coloured by another quantity."""
     flushing = Signal()
     """The text is about to be saved or left: what was typed last is to be handed on."""
+    taken_over = Signal()
+    """The study is another, and the state before it is pinned as A."""
     message = Signal(str)
     """Something that a user shall read, and find again."""
     _forgotten = Signal()
@@ -260,6 +264,7 @@ class LiveSession(QObject):
         """Go on with another text of the study, the present state pinned."""
         self.pin()
         self.write(text)
+        self.taken_over.emit()
 
     def compare_in_map(self, is_compared: bool) -> None:
         """Have the map show the difference to the pinned state, or not."""

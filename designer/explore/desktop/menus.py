@@ -68,6 +68,15 @@ class Menus:
         self._view_menu()
         self._platform_menu()
         self._add(
+            self._menu("&Tools", "tools menu"),
+            Command("optimise", "&Optimise …", "Ctrl+Shift+O",
+                    "Choose fields of the study, as a plan says, for the best result",
+                    window.files.optimise),
+            Command("sweep", "S&weep …", "Ctrl+Shift+W",
+                    "Solve the study for all values of a plan, and report them",
+                    window.files.sweep),
+        )  # fmt: skip
+        self._add(
             self._menu("&Help", "help menu"),
             Command("keys", "&Mouse, keys and quantities", "F1", "What they do and are",
                     lambda: Help(window).show(), _KEY.HelpContents),
@@ -249,8 +258,7 @@ class Menus:
             "put all back": session is not None and session.is_modified,
             "to worst": at_work and getattr(live.answers.get("worst"), "place", None) is not None,
             "to pose": at_work and study is not None and study.pose is not None,
-            "keep pose": at_work,
-            "pin": at_work,
+            **dict.fromkeys(("keep pose", "pin", "optimise", "sweep"), at_work),
             "release": live.pinned is not None,
             **{f"export {name}": at_work for name, *_ in _EXPORTS},
             **{f"look {view}": at_work for view, *_ in _VIEWS},

@@ -33,8 +33,6 @@ _ALL = "all, in units of noise"
 class PanelMeasured(QWidget):
     """Residuals over any covariate; the diagnosis, and taking over what it found."""
 
-    taken_over = Signal()
-    """The effects that were found are in the study."""
     rows_wanted = Signal(bool)
     """The measured rows shall be seen in the scene."""
 
@@ -125,7 +123,6 @@ class PanelMeasured(QWidget):
     def _take_over(self) -> None:
         if self._diagnosis is not None:
             self._live.take_over(self._diagnosis.diagnosed_text)
-            self.taken_over.emit()
 
     def _draw(self) -> None:
         residuals = self._residuals

@@ -109,7 +109,7 @@ class Window(QMainWindow):
         self.text.asks_to_reload.connect(files.reload)
         self.text.asks_to_leave.connect(self.show_work)
         self.measured.rows_wanted.connect(self.work.want_rows)
-        self.measured.taken_over.connect(self.docks["Compare"].raise_)
+        live.taken_over.connect(self.docks["Compare"].raise_)
 
     # Pages
 
