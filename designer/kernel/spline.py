@@ -33,8 +33,6 @@ def at_earlier_times(time: FloatArray, values: FloatArray, offset: float, out: F
     at = 0
     for row in range(n):
         t = min(max(time[row] - offset, time[0]), time[n - 1])
-        if row == 0:
-            at = max(np.searchsorted(time, t) - 1, 0)
         while at < n - 2 and time[at + 1] < t:
             at += 1
         h = time[at + 1] - time[at]

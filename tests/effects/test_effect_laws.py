@@ -212,6 +212,38 @@ def test_sizes_follow_the_machine(machine):
         assert small.typical < max(map(abs, small.plausible)), name
 
 
+@pytest.mark.parametrize(
+    ("name", "parameter", "believed", "doubted"),
+    [
+        # The sheave of a winch on a desk, and one that a tall man could hide behind.
+        ("pulley_radius", "radius_m", (0.008, 0.5), (0.003, 0.9)),
+        ("centre_of_mass_offset", "z_m", (-0.4, 0.4), (-0.7, 0.7)),
+        ("base_tilt", "rx_rad", (-0.08, 0.08), (-0.15, 0.15)),
+        ("length_offset", "offset_1_m", (-0.8, 0.8), (-1.5, 1.5)),
+        ("drum_scale", "scale", (0.96, 1.04), (0.9, 1.1)),
+        ("elastic_modulus", "scale", (0.3, 4.0), (0.15, 7.0)),
+        # A rope soaked or iced over weighs twice as much; one that has lost a third is another.
+        ("linear_mass", "scale", (0.85, 2.0), (0.6, 4.0)),
+        ("clock_offset", "offset_s", (-4.0, 4.0), (-8.0, 8.0)),
+        ("pulley_friction", "coefficient", (0.01, 0.25), (0.45,)),
+        ("tension_gain", "gain", (0.8, 1.3), (0.5, 2.0)),
+        # Aramid shrinks as it warms, polyamide grows by a tenth of a permille a degree.
+        ("thermal_expansion", "coefficient_per_K", (-6e-6, 1.2e-5, 1e-4), (-8e-5, 3e-4)),
+    ],
+)
+def test_values_that_an_engineer_believes_or_doubts(
+    six_cable_robot,
+    name: str,
+    parameter: str,
+    believed: tuple[float, ...],
+    doubted: tuple[float, ...],
+) -> None:
+    effect = effect_of(Machine(six_cable_robot, CABLE), name)
+    (tried,) = (p for p in effect.parameters if p.name == parameter)
+    assert all(map(tried.is_plausible, believed))
+    assert not any(map(tried.is_plausible, doubted))
+
+
 def test_a_turn_pays_out_cable_at_the_largest_gain_of_a_drum(machine):
     """A fit tries no gain at which a turn would pay out nothing within the frame."""
     (gain,) = (p for p in effect_of(machine, "drum_layering").parameters if "gain" in p.name)

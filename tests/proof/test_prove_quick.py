@@ -5,17 +5,24 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, frozen_array
 from designer.model.cable import Cable, Material
 from designer.model.prism import Prism
-from designer.model.robot import Poses, Robot
+from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.proof.cover import covers_of
 from designer.proof.encloser import Encloser
 from designer.proof.prove import Budget, prove
 from designer.statics.inverse import solve_sagging
 
+FOUR = Robot(
+    frozen_array([[0, 0, 0], [100, 0, 0], [100, 80, 0], [0, 80, 0]]),
+    Platform(1000.0),
+    tension_min_N=1100.0,
+)
+ROPE = Cable(0.01, 0.4, 6e6, 12_000.0)
 PART = Space(Prism.box((200.0, 260.0), (120.0, 170.0), (-120.0, -90.0)), Orientations())
 
 
@@ -62,3 +69,55 @@ def test_no_pose_of_a_box_exceeds_its_bound(fast_robot: Robot, steel: Material) 
     assert np.isfinite(bound).mean() > 0.8
     assert (used <= bound * (1.0 + 1e-12)).all()
     assert (bound / used)[extent.max(axis=1) < 2.0].max() < 1.05
+
+
+@pytest.mark.parametrize(
+    ("name", "share", "falls"),
+    # That of three cables is quick, and of the first order.
+    [("three", 2.0**-7, 4.0), ("six", 2.0**-5, 16.0), ("four", 2.0**-6, 16.0)],
+)
+def test_bounds_of_small_boxes_come_near_what_poses_ask_for(
+    name: str, share: float, falls: float, fast_robot: Robot, six_cable_robot: Robot
+) -> None:
+    """The gap falls with the square of the size, so that few boxes prove much."""
+    robot, sides = {
+        "three": (fast_robot, ((200.0, 260.0), (120.0, 170.0), (-120.0, -90.0))),
+        "six": (six_cable_robot, ((-15.0, 15.0), (-15.0, 15.0), (-60.0, -40.0))),
+        "four": (replace(FOUR, tension_min_N=0.0), ((30.0, 70.0), (20.0, 60.0), (-40.0, -20.0))),
+    }[name]
+    (cover,) = covers_of(Space(Prism.box(*sides), Orientations()))
+    encloser, extent = Encloser(robot, ROPE, cover), (cover.high - cover.low)[0]
+    middle = cover.low[0] + np.random.default_rng(3).uniform(0.1, 0.9, (20, 3)) * extent
+    gaps = []
+    for half in (0.5 * share * extent, 0.125 * share * extent):
+        bound = encloser.bound(middle - half, middle + half, np.full(20, 1e-6), np.inf).bound
+        corners = middle[:, None] + half * np.array(list(np.ndindex(2, 2, 2))) * 2.0 - half
+        used = encloser.utilisation(cover.places(corners.reshape(-1, 3))).reshape(20, 8)
+        gaps.append(bound / used.max(axis=1) - 1.0)
+    assert gaps[0].max() < 0.02
+    assert (gaps[0] / gaps[1] > 0.85 * falls).all()
+
+
+def test_bounds_of_a_machine_on_a_desk_are_those_of_a_large_one(fast_robot: Robot) -> None:
+    """All lengths and forces divided by the same number, the weight of the cables left as it is."""
+    small, rng = 1.0 / 1024.0, np.random.default_rng(4)
+    platform = replace(FOUR.platform, mass_kg=small * FOUR.platform.mass_kg)
+    desk = replace(
+        FOUR,
+        exit_points_m=frozen_array(small * FOUR.exit_points_m),
+        platform=platform,
+        tension_min_N=small * FOUR.tension_min_N,
+    )
+    thread = Cable(0.01, 0.4, small * ROPE.axial_stiffness_N, small * ROPE.allowable_tension_N)
+    low = rng.uniform([10.0, 10.0, -60.0], [80.0, 65.0, -30.0], (40, 3))
+    high = low + 10.0 ** rng.uniform(-1.0, 1.0, (40, 3))
+    bounds = []
+    for robot, rope, scale in ((FOUR, ROPE, 1.0), (desk, thread, small)):
+        box = Prism.box(*(scale * np.array([[0, 100], [0, 80], [-70, -10]])).tolist())
+        (cover,) = covers_of(Space(box, Orientations()))
+        encloser = Encloser(robot, rope, cover)
+        bounds.append(encloser.bound(scale * low, scale * high, np.full(40, 0.1), np.inf).bound)
+    is_bounded = np.isfinite(bounds[0])
+    assert 5 < is_bounded.sum() < 35
+    assert (is_bounded == np.isfinite(bounds[1])).all()
+    assert bounds[1][is_bounded] == pytest.approx(bounds[0][is_bounded], rel=1e-9)

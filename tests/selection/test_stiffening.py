@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -19,8 +21,9 @@ from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
+from designer.progress import Advance
 from designer.selection.candidate import candidates_of, undominated
-from designer.selection.groups.choose import choose_groups_of
+from designer.selection.groups.choose import MOST_PROPOSALS, choose_groups_of
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.selection.stiffening import as_it_meets
@@ -167,6 +170,23 @@ def test_groups_have_the_stiffness_at_their_largest_tension() -> None:
     for product in choice.chosen.ropes:
         expected = product.cable.at_tension(tension_N).axial_stiffness_N
         assert product.cable.axial_stiffness_N == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_bar_advances_by_one_with_each_proposal_for_groups() -> None:
+    steps: list[int] = []
+
+    class Counter:
+        @contextmanager
+        def task(self, name: str, total: int) -> Iterator[Advance]:
+            assert total == MOST_PROPOSALS
+            yield steps.append
+
+    selection = Selection(
+        safety_factor=5.0, groups=(CableGroup("a", (1,)), CableGroup("b", (2, 3)))
+    )
+    steel = family_grade(700.0, diameters_mm=(3.0, 4.0, 5.0, 6.0))  # chosen in a single round
+    choice = choose_groups_of(POINTS, selection, [steel], AsBuilt(ROBOT), None, Counter())
+    assert sum(steps) == len(choice.proposals) > 0
 
 
 def test_no_rope_is_beaten_by_one_that_may_be_the_stiffer() -> None:

@@ -87,6 +87,23 @@ def test_cables_that_differ(six_cable_robot) -> None:
     assert np.abs(found.poses.position_m - poses.position_m[solved]).max() < 1e-9
 
 
+@pytest.mark.parametrize("name", ["fast_robot", "six_cable_robot"])
+def test_from_its_own_answer_it_comes_no_farther_from_balance(request, name: str) -> None:
+    robot = request.getfixturevalue(name)
+    length = solve_sagging(robot, poses_under(robot, 40, 8), ROPE).length_m
+    length = length[np.isfinite(length).all(axis=1)]
+    assert len(length) > 20
+    start = solve_forward(robot, ROPE, length, nudged(poses_under(robot, 1, 8), 1.0, 9))
+    again = solve_forward(robot, ROPE, length, start.poses)
+
+    def imbalance_N(found: ForwardStatics) -> np.ndarray:
+        return np.linalg.norm(found.statics.equilibrium_residual_N()[:, :3], axis=1)
+
+    held = start.statics.is_solved
+    assert held.any()
+    assert (imbalance_N(again) <= imbalance_N(start))[held].all()
+
+
 def test_batch_equals_loop_on_any_leading_axes() -> None:
     starts = spread_poses(COGIRO, 6)
     lengths = COGIRO_LENGTHS_M * np.array([[1.0], [1.001]])[:, None]
