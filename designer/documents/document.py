@@ -5,11 +5,12 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from itertools import takewhile
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
-from designer.documents.node import Key, Node, path_text, printable
+from designer.documents.node import Key, Keys, Node, path_text, printable
 from designer.documents.opened import read_bytes
 from designer.errors import Fault, InputError
 
@@ -105,53 +106,30 @@ def decode(raw: bytes, name: str) -> str:
     return text
 
 
-@dataclass(slots=True)
-class _Open:
-    """A mapping or list whose end has not been read yet."""
-
-    line: int
-    anchor: str | None
-    is_mapping: bool
-    items: list[Node] = field(default_factory=list)
-    fields: dict[str, Node] = field(default_factory=dict)
-    key: str | None = None
-    key_line: int = 0
-
-    def close(self) -> Node:
-        children = list(self.fields.values()) if self.is_mapping else self.items
-        return Node(
-            line=self.line,
-            content=self.fields if self.is_mapping else tuple(self.items),
-            size=1 + sum(child.size for child in children),
-            height=1 + max((child.height for child in children), default=0),
-        )
-
-
 class _Composer:
     """Builds the tree from the parser's events, one by one, so that nothing expands unseen."""
 
     def __init__(self, name: str) -> None:
         self.faults: list[Fault] = []
         self._name = name
-        self._open: list[_Open] = []
-        self._anchors: dict[str, Node] = {}
-        self._root: Node | None = None
-        self._lines: list[str] = []
+        self._events: Iterator[yaml.Event] = iter(())
+        self._anchors: dict[str, Node | None] = {}  # None for what is not at its end yet
 
     def compose(self, text: str) -> Node | None:
         """Return the outermost value; None for an empty document."""
         import yaml
 
-        self._lines = text.splitlines()
-        documents = 0
         try:
             loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml is not everywhere
-            events: Iterator[yaml.Event] = yaml.parse(text, Loader=loader)
-            for event in events:
+            self._events = yaml.parse(text, Loader=loader)
+            root: Node | None = None
+            documents = 0
+            for event in self._events:
                 documents += isinstance(event, yaml.DocumentStartEvent)
                 if documents > 1:
                     _refuse(self._name, _line(event), "a second document starts here", "only one")
-                self._take(event)
+                if isinstance(event, yaml.NodeEvent):
+                    root = self._node(event, ())
         except yaml.YAMLError as error:
             mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
             reason = (
@@ -160,81 +138,86 @@ class _Composer:
             line = None if mark is None else mark.line + 1
             if "nesting depth" in str(reason):  # libyaml's own limit, which newer ones have
                 self._refuse_nesting(line)
-            text = "" if line is None else "".join(self._lines[line - 1 : line])
+            text = "" if line is None else "".join(text.splitlines()[line - 1 : line])
             if "\t" in text[: len(text) - len(text.lstrip())]:
                 _refuse(self._name, line, "a tab indents this line", "blanks, which YAML asks for")
             _refuse(self._name, line, f"this is not valid YAML: {printable(str(reason))}")
-        is_blank = self._root is not None and self._root.data() is None
-        return None if is_blank else self._root
+        return None if root is None or root.data() is None else root
 
-    def _take(self, event: yaml.Event) -> None:
+    def _node(self, event: Any, keys: Keys) -> Node:
+        """Return the value at a path that begins with an event."""
         import yaml
 
-        if isinstance(event, yaml.ScalarEvent):
-            self._check_tag(event)
-            self._add(Node(_line(event), event.value, event.implicit[0]), event.anchor)
-        elif isinstance(event, yaml.AliasEvent):
+        line = _line(event)
+        if isinstance(event, yaml.AliasEvent):
             anchor = str(event.anchor)
-            alias, line = f"the alias *{printable(anchor)}", _line(event)
-            if any(opened.anchor == anchor for opened in self._open):
-                _refuse(self._name, line, f"{alias} contains itself")
             if anchor not in self._anchors:
-                _refuse(self._name, line, f"{alias} has no anchor before it")
-            self._add(self._anchors[anchor])
-        elif isinstance(event, yaml.CollectionStartEvent):
-            self._check_tag(event)
-            self._start(event, isinstance(event, yaml.MappingStartEvent))
-        elif isinstance(event, yaml.CollectionEndEvent):
-            opened = self._open.pop()
-            node = opened.close()
-            if node.size > MOST_VALUES:
-                problem = f"the aliases or lists here expand to more than {MOST_VALUES} values"
-                _refuse(self._name, node.line, problem)
-            if node.height > DEEPEST_NESTING:
-                self._refuse_nesting(node.line)
-            self._add(node, opened.anchor)
-
-    def _start(self, event: yaml.CollectionStartEvent, is_mapping: bool) -> None:
-        if len(self._open) >= DEEPEST_NESTING:
-            self._refuse_nesting(_line(event))
-        if self._open and self._open[-1].is_mapping and self._open[-1].key is None:
-            _refuse(self._name, _line(event), "a mapping or a list is no field name", "a name")
-        self._open.append(_Open(_line(event), event.anchor, is_mapping))
-
-    def _add(self, node: Node, anchor: str | None = None) -> None:
-        if anchor is not None:
-            self._anchors[anchor] = node
-        if not self._open:
-            self._root = node
-            return
-        parent = self._open[-1]
-        if not parent.is_mapping:
-            parent.items.append(node)
-        elif parent.key is None:
-            if not isinstance(node.content, str):
-                _refuse(self._name, node.line, "a mapping or a list is no field name", "a name")
-            parent.key, parent.key_line = node.content, node.line
-        elif parent.key in parent.fields:
-            keys = [
-                container.key or "" if container.is_mapping else len(container.items)
-                for container in self._open
-            ]
-            problem = f"is given twice, first in line {parent.fields[parent.key].line}"
-            place = path_text(keys)
-            self.faults.append(Fault(self._name, parent.key_line, place, problem, "once"))
-            parent.key = None
+                problem = "has no anchor before it"
+            elif (anchored := self._anchors[anchor]) is not None:
+                return anchored
+            else:
+                problem = "contains itself"
+            _refuse(self._name, line, f"the alias *{printable(anchor)} {problem}")
+        if event.tag not in (None, "!"):
+            tag = printable(event.tag.replace("tag:yaml.org,2002:", "!!"))
+            _refuse(self._name, line, f"the tag '{tag}' is not supported", "plain YAML")
+        if isinstance(event, yaml.ScalarEvent):
+            node = Node(line, event.value, event.implicit[0])
         else:
-            parent.fields[parent.key] = replace(node, line=parent.key_line)
-            parent.key = None
+            if len(keys) >= DEEPEST_NESTING:
+                self._refuse_nesting(line)
+            if event.anchor is not None:
+                self._anchors[event.anchor] = None
+            is_mapping = isinstance(event, yaml.MappingStartEvent)
+            node = self._collection(line, self._fields(keys) if is_mapping else self._items(keys))
+        if event.anchor is not None:
+            self._anchors[event.anchor] = node
+        return node
+
+    def _collection(self, line: int, content: tuple[Node, ...] | dict[str, Node]) -> Node:
+        children = content if isinstance(content, tuple) else content.values()
+        size = 1 + sum(child.size for child in children)
+        height = 1 + max((child.height for child in children), default=0)
+        if size > MOST_VALUES:
+            problem = f"the aliases or lists here expand to more than {MOST_VALUES} values"
+            _refuse(self._name, line, problem)
+        if height > DEEPEST_NESTING:
+            self._refuse_nesting(line)
+        return Node(line, content, size=size, height=height)
+
+    def _items(self, keys: Keys) -> tuple[Node, ...]:
+        items: list[Node] = []
+        for event in self._until_end():
+            items.append(self._node(event, (*keys, len(items))))
+        return tuple(items)
+
+    def _fields(self, keys: Keys) -> dict[str, Node]:
+        import yaml
+
+        fields: dict[str, Node] = {}
+        for event in self._until_end():
+            is_collection = isinstance(event, yaml.CollectionStartEvent)
+            name = "" if is_collection else self._node(event, keys).content
+            if is_collection or not isinstance(name, str):
+                _refuse(self._name, _line(event), "a mapping or a list is no field name", "a name")
+            place, line = (*keys, name), _line(event)
+            value = self._node(next(self._events), place)
+            if name in fields:
+                problem = f"is given twice, first in line {fields[name].line}"
+                self.faults.append(Fault(self._name, line, path_text(place), problem, "once"))
+            else:
+                fields[name] = replace(value, line=line)
+        return fields
+
+    def _until_end(self) -> Iterator[yaml.Event]:
+        """Yield what begins in the collection that is open, up to its end."""
+        import yaml
+
+        return takewhile(lambda event: not isinstance(event, yaml.CollectionEndEvent), self._events)
 
     def _refuse_nesting(self, line: int | None) -> NoReturn:
         problem = f"values are nested more than {DEEPEST_NESTING} levels deep"
         _refuse(self._name, line, problem)
-
-    def _check_tag(self, event: yaml.ScalarEvent | yaml.CollectionStartEvent) -> None:
-        if event.tag not in (None, "!"):
-            tag = printable(event.tag.replace("tag:yaml.org,2002:", "!!"))
-            _refuse(self._name, _line(event), f"the tag '{tag}' is not supported", "plain YAML")
 
 
 def _line(event: yaml.Event) -> int:
