@@ -5,34 +5,92 @@ Many poses are one block-diagonal problem. `designer.statics.distribution` is te
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import cvxpy as cp
 import numpy as np
 from scipy.sparse import bsr_array
 
-from designer.arrays import FloatArray
+from designer.arrays import BoolArray, FloatArray, VerdictArray
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
-from designer.statics.distribution import (
-    _PROVEN,
-    _RANK,
-    Distribution,
-    _even_residual,
-    _shaped,
-    _Shares,
-    _shares,
-    _worst,
-)
+from designer.statics.geometry import cable_geometry, density_matrix, load_wrench_N
+from designer.statics.pulleys import straight_run
 
 Objective = Literal["smallest_largest", "least_squares", "centred"]
 """Smallest largest tension, smallest sum of squares, or nearest to the middle of the range."""
 
 BLOCK = 200
 """Poses in one problem; building it costs more than solving it."""
+PROVEN = 1e-6
+"""Residual of the optimality conditions up to which they count as met."""
+RANK = 1e-9
+"""Product with a unit wrench that is rounding, and no gain."""
 # Of the sum over all poses of a block, so that each of them is good.
 _CLARABEL = {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-11}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Distribution:
+    """Tensions of straight cables in poses (...), each pose with its verdict and proof.
+
+    Parameters
+    ----------
+    verdict : array (...)
+        One `Verdict` a pose: solved, outside the wrench-feasible hull, rank deficient, or not
+        converged.
+    tension_N : array (..., n_cables)
+        NaN wherever the verdict is not solved [N].
+    optimality_residual : array (...)
+        Largest violation of the optimality conditions, forces over the largest load; NaN unless
+        solved.
+    separating_wrench : array (..., degrees of freedom)
+        Where the pose is outside the hull: force and moment [1/N, 1/(N·m)] whose product with the
+        load exceeds that with every wrench that the cables can give. NaN elsewhere.
+    separation : array (...)
+        By how much, over the largest load; above zero is proof. NaN elsewhere.
+    """
+
+    verdict: VerdictArray
+    tension_N: FloatArray
+    optimality_residual: FloatArray
+    separating_wrench: FloatArray
+    separation: FloatArray
+
+    @property
+    def is_feasible(self) -> BoolArray:
+        """Poses (...) that some allowed tensions hold."""
+        return np.asarray(self.verdict == Verdict.SOLVED)
+
+    @property
+    def largest_tension_N(self) -> FloatArray:
+        """Largest tension (...) [N]; NaN where there is none."""
+        return np.asarray(self.tension_N.max(axis=-1))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Shares:
+    """The scaled problem of poses (n_poses,): tensions over a force, moments over a length.
+
+    Parameters
+    ----------
+    matrix : array (n_poses, dof, n_cables)
+        Wrench per tension.
+    wrench : array (n_poses, dof)
+        What the tensions have to give.
+    low, high : float
+        Bounds of the tensions.
+    scale_N, rows : float, array (dof,)
+        Force that tensions are measured in [N]; what the rows of the wrench are divided by.
+    """
+
+    matrix: FloatArray
+    wrench: FloatArray
+    low: float
+    high: float
+    scale_N: float
+    rows: FloatArray
 
 
 def distribute(
@@ -74,6 +132,51 @@ def distribute(
     return _shaped(poses.shape, shares, *parts)
 
 
+def _shares(
+    robot: Robot, poses: Poses, tension_max_N: float, force_N: FloatArray | None
+) -> _Shares:
+    run = straight_run(robot, poses)
+    geometry = cable_geometry(robot, poses, run.exit_points_m)
+    with np.errstate(invalid="ignore"):  # a cable of no length has no direction
+        matrix = density_matrix(robot, geometry) / geometry.chord_m[..., None, :]
+    wrench = load_wrench_N(robot, poses, force_N)
+    reach = float(np.abs(robot.attachments_m).sum(axis=1).max()) or 1.0
+    rows = np.where(robot.balance_rows < 3, 1.0, reach)
+    scale = float(np.abs(wrench / rows).max(initial=0.0)) or 1.0
+    dof, n = robot.degrees_of_freedom, robot.n_cables
+    return _Shares(
+        matrix=(matrix / rows[:, None]).reshape(-1, dof, n),
+        wrench=(np.broadcast_to(wrench, (*poses.shape, dof)) / rows / scale).reshape(-1, dof),
+        low=robot.tension_min_N / scale,
+        high=tension_max_N / scale,
+        scale_N=scale,
+        rows=rows,
+    )
+
+
+def _shaped(
+    shape: tuple[int, ...],
+    shares: _Shares,
+    verdict: VerdictArray,
+    scaled: FloatArray,
+    residual: FloatArray,
+    separating: FloatArray,
+    separation: FloatArray,
+) -> Distribution:
+    """Keep each result where it means something, in newtons and with its leading axes."""
+    solved = verdict == Verdict.SOLVED
+    apart = (verdict == Verdict.OUTSIDE_HULL) & (separation > 0.0)
+    wrench = separating / shares.rows / shares.scale_N
+    tension = np.where(solved[:, None], scaled * shares.scale_N, np.nan)
+    return Distribution(
+        verdict=verdict.reshape(shape),
+        tension_N=tension.reshape(*shape, tension.shape[1]),
+        optimality_residual=np.where(solved, residual, np.nan).reshape(shape),
+        separating_wrench=np.where(apart[:, None], wrench, np.nan).reshape(*shape, wrench.shape[1]),
+        separation=np.where(apart, separation, np.nan).reshape(shape),
+    )
+
+
 def _part(shares: _Shares, chosen: Any) -> _Shares:
     return replace(shares, matrix=shares.matrix[chosen], wrench=shares.wrench[chosen])
 
@@ -84,18 +187,18 @@ def _solve_block(shares: _Shares, objective: Objective) -> tuple[Any, ...]:
     verdict = np.full(count, Verdict.RANK_DEFICIENT, dtype=np.int8)
     tension = np.full((count, n), np.nan)
     residual = np.full(count, np.nan)
-    spans = np.linalg.matrix_rank(shares.matrix, tol=_RANK) == dof
+    spans = np.linalg.matrix_rank(shares.matrix, tol=RANK) == dof
     distance, separating = np.zeros(count), np.full((count, dof), np.nan)
     if spans.any():
         distance[spans], separating[spans] = _distance(_part(shares, spans))
     separation = _separation(shares, separating, upper=shares.high)
-    near = spans & (distance <= _PROVEN)
+    near = spans & (distance <= PROVEN)
     verdict[spans & ~near] = np.where(
         separation[spans & ~near] > 0.0, Verdict.OUTSIDE_HULL, Verdict.NOT_CONVERGED
     )
     if near.any():
         tension[near], residual[near] = _best(_part(shares, near), objective)
-        proven = residual[near] < _PROVEN
+        proven = residual[near] < PROVEN
         verdict[near] = np.where(proven, Verdict.SOLVED, Verdict.NOT_CONVERGED)
     return verdict, tension, residual, separating, separation
 
@@ -173,7 +276,29 @@ def _separation(shares: _Shares, wrench: FloatArray, *, upper: float) -> FloatAr
     wrench = wrench / np.where(size > 0.0, size, 1.0)
     gain = np.einsum("pi,pij->pj", wrench, shares.matrix)
     # Rounding in a product with an unbounded tension is no gain.
-    rising = gain > (_RANK if np.isinf(upper) else 0.0)
+    rising = gain > (RANK if np.isinf(upper) else 0.0)
     least = shares.low if np.isfinite(upper) else 0.0
     most = np.where(rising, gain * upper if np.isfinite(upper) else np.inf, gain * least)
     return np.asarray(np.einsum("pi,pi->p", wrench, shares.wrench) - most.sum(axis=1))
+
+
+def _even_residual(shares: _Shares, tension: FloatArray, multiplier: FloatArray) -> FloatArray:
+    """Return the residual of optimality for the smallest largest tension, pose by pose.
+
+    With multipliers y of the balance, those of t ≤ largest and t ≥ low have to be the positive and
+    the negative part of -Aᵀy; the former sum to one, and each vanishes off its bound.
+    """
+    pull = -np.einsum("pi,pij->pj", multiplier, shares.matrix)
+    total = np.maximum(pull, 0.0).sum(axis=1, keepdims=True)
+    pull = pull / np.where(total > 0.0, total, np.nan)
+    room = tension.max(axis=1, keepdims=True) - tension
+    height = tension - shares.low
+    slackness = np.where(pull > 0.0, pull * room, -pull * height)
+    return _worst(shares, tension, slackness)
+
+
+def _worst(shares: _Shares, tension: FloatArray, slackness: FloatArray) -> FloatArray:
+    rest = np.einsum("pij,pj->pi", shares.matrix, tension) - shares.wrench
+    outside = np.maximum(shares.low - tension, tension - shares.high)
+    parts = np.abs(rest).max(axis=1), outside.max(axis=1), np.abs(slackness).max(axis=1)
+    return np.asarray(np.maximum(np.maximum(parts[0], parts[1]), parts[2]))

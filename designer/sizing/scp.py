@@ -150,33 +150,6 @@ def size_by_scp(robot: Robot, pose: Poses, material: Material, *, max_turns: int
     return problem.answer(state, y, c, turns)
 
 
-def optimality_of(
-    robot: Robot, pose: Poses, material: Material, diameter_m: float, force_x_N: FloatArray
-) -> tuple[float, float]:
-    """Return the residuals of feasibility and optimality of an answer, whoever found it.
-
-    Parameters
-    ----------
-    robot, pose, material
-        As for `size_by_scp`.
-    diameter_m : float
-        The thinnest cable's diameter [m].
-    force_x_N : array (n_cables,)
-        Horizontal forces on the cables at the platform [N].
-
-    Returns
-    -------
-    feasibility, optimality : float
-        As in `ScpSizing`.
-    """
-    problem = _Problem.of(robot, pose, material)
-    allowable = material.cable(diameter_m).weight_N_per_m * material.strength_length_m
-    c = problem.load_N / allowable
-    y = force_x_N * problem.chord_m / (problem.distance_m * allowable)
-    state = problem.state(y)
-    return problem.violation(state, c), problem.gap(state, y, c)
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class _Problem:
     """One pose, forces over the strength of the cable; moments over the reach."""
@@ -195,8 +168,8 @@ class _Problem:
     @classmethod
     def of(cls, robot: Robot, pose: Poses, material: Material) -> _Problem:
         geometry = cable_geometry(robot, pose)
-        massless = distribute_evenly(robot, pose)
-        if not massless.is_feasible:
+        massless_N = distribute_evenly(robot, pose)
+        if np.isnan(massless_N).any():
             raise ValueError("straight cables cannot hold this pose")
         reach = float(np.abs(robot.attachments_m).sum(axis=1).max()) or 1.0
         rows = np.where(robot.balance_rows < 3, 1.0, reach)
@@ -211,7 +184,7 @@ class _Problem:
             wrench / size,
             size,
             np.full(robot.n_cables, robot.tension_min_N / size),
-            massless.tension_N / size,
+            massless_N / size,
             _pulls_of_sag(robot.family_sag_max, geometry, material),
         )
 

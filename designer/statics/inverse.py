@@ -237,7 +237,7 @@ def solve_massless(robot: Robot, poses: Poses) -> MasslessStatics:
     run = straight_run(robot, poses)
     geometry = cable_geometry(robot, poses, run.exit_points_m)
     if robot.is_redundant:
-        tension = distribute_evenly(robot, poses).tension_N
+        tension = distribute_evenly(robot, poses)
         return MasslessStatics(geometry.chord_m + run.wrap_m, tension)
     with np.errstate(invalid="ignore", divide="ignore"):
         matrices = density_matrix(robot, geometry)
