@@ -211,11 +211,11 @@ def search_and_hold(
     unsearched = searcher.fit([], thorough=True)
     if find_swapped(*_residual_and_predicted(problem, unsearched.settings, rows)):
         return Outcome(searcher, problem, rows, (), unsearched, ())
-    search = searcher.run()
+    steps, model, effects_found = searcher.run()
     # The best of what would still earn its place, but with values that nobody would believe.
-    last = [t for t in (search.steps[-1].trials if search.steps else ()) if t.earns_its_place]
+    last = [t for t in (steps[-1].trials if steps else ()) if t.earns_its_place]
     wild = [gone for t in last if (gone := implausible(t.fit, [t.effect]))][:1]
-    outcome = Outcome(searcher, problem, rows, search.steps, search.fit, search.found, tuple(wild))
+    outcome = Outcome(searcher, problem, rows, steps, model, effects_found, tuple(wild))
     outcome = outcome.holding((_implausible, _bent), progress)
     rest = without(candidates, *(withdrawal.effect for withdrawal in outcome.withdrawn))
     return replace(outcome, searcher=replace(searcher, candidates=rest))

@@ -80,25 +80,6 @@ class Step:
     is_complete: bool = True
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Search:
-    """The whole search.
-
-    Parameters
-    ----------
-    steps : tuple of Step
-        Round by round.
-    fit : Fit
-        The final model, refitted jointly.
-    found : tuple of Effect
-        Its effects, without those unknown from the start.
-    """
-
-    steps: tuple[Step, ...]
-    fit: Fit
-    found: tuple[Effect, ...]
-
-
 def _simplest(trials: Sequence[EffectTrial]) -> EffectTrial | None:
     """Of the best that earn their place, and those nearly as good, the one with fewest numbers."""
     good = [t for t in trials if t.may_be_added]
@@ -151,8 +132,11 @@ class Searcher:
     rows: BoolArray
     progress: Pace = field(default_factory=Pace)
 
-    def run(self) -> Search:
-        """Add, exchange and prune until nothing changes, or a set of effects comes again."""
+    def run(self) -> tuple[tuple[Step, ...], Fit, tuple[Effect, ...]]:
+        """Add, exchange and prune until nothing changes, or a set of effects comes again.
+
+        Returns the rounds, the final model, refitted jointly, and its effects without those given.
+        """
         effects: list[Effect] = []
         steps: list[Step] = []
         present = self.fit(effects)
@@ -174,7 +158,7 @@ class Searcher:
             effects = self._pruned(effects)
             present = self.fit(effects, best.fit)
         effects = self._predicting(effects, present)
-        return Search(tuple(steps), self.fit(effects, present, thorough=True), tuple(effects))
+        return tuple(steps), self.fit(effects, present, thorough=True), tuple(effects)
 
     def fit(
         self,

@@ -13,8 +13,7 @@ from designer.arrays import FloatArray, frozen_array
 from designer.effects.design import AsBuilt
 from designer.errors import DesignerError
 from designer.grades.grade import Grade
-from designer.grades.kept import kept_catalogue
-from designer.grades.registry import Catalogue
+from designer.grades.registry import Catalogue, kept_catalogue
 from designer.model.cable import Cable, Cables, Material
 from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Poses, Robot

@@ -165,6 +165,34 @@ def load_catalogue(
     )
 
 
+_kept: list[tuple[Plugins, object, Catalogue]] = []
+
+
+def kept_catalogue(paths: Sequence[Path], plugins: Plugins) -> Catalogue:
+    """Return what `load_catalogue` does, read anew only for other plugins or changed files.
+
+    Checking every grade takes longer than most studies.
+
+    Raises
+    ------
+    InputError
+        If a file in ``paths`` is faulty, or has the id of another grade.
+    """
+    state = tuple((path, _changed_at(path)) for path in (*paths, user_catalogue_folder()))
+    if not (_kept and _kept[0][0] is plugins and _kept[0][1] == state):
+        _kept[:] = [(plugins, state, load_catalogue(paths, plugins=plugins))]
+    return _kept[0][2]
+
+
+def _changed_at(path: Path) -> tuple[float, ...]:
+    """Return when a file, or those of a folder, were changed; nothing where there is none."""
+    try:
+        files = sorted(path.rglob("*")) if path.is_dir() else [path]
+        return tuple(file.stat().st_mtime for file in files)
+    except OSError:
+        return ()
+
+
 def user_catalogue_folder() -> Path:
     """Return the folder whose grade files are always loaded, if it exists."""
     from platformdirs import user_data_path

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cache, partial
 
 from designer.analysis.result_json import Json
 from designer.grades.grade import Grade
@@ -72,40 +73,27 @@ class Examiner:
     def _met(self, study: Study) -> tuple[float, float, str]:
         """Return the objective, and the worst breach of a limit."""
         require_enough_cables(study)
-        figures = _Figures(self, study)
-        value = figures.of(self.plan.objective)
-        breaches = [(limit.excess(figures.of(limit.measure)), limit) for limit in self.plan.limits]
+        quick = Quick(study, self.grades, self.plan.samples)
+        whole = cache(partial(self._whole, study, quick))
+
+        def figure(measure: Measure) -> float:
+            if measure.quick is None:
+                value = measure.value(whole())
+            else:
+                quick.require()
+                value = measure.quick(quick)
+            if value is None or math.isnan(value):
+                raise NotHeldError(1.0, f"there is no {measure.title}")
+            return value
+
+        value = figure(self.plan.objective)
+        breaches = [(limit.excess(figure(limit.measure)), limit) for limit in self.plan.limits]
         excess, limit = max(breaches, key=lambda breach: breach[0], default=(0.0, None))
         if excess == 0.0 or limit is None:
             return value, 0.0, ""
         return value, excess / (1.0 + excess), broken(limit)
 
-
-def broken(limit: Limit) -> str:
-    """Return that a limit is broken, for the reader of a report."""
-    bound = f"{limit.value:.6g} {limit.measure.dimension.unit}".rstrip()
-    return f"{limit.measure.title} is not {limit.words} {bound}"
-
-
-class _Figures:
-    """The measures of one design, by the quick way where they have one."""
-
-    def __init__(self, examiner: Examiner, study: Study) -> None:
-        self._plan, self._study = examiner.plan, study
-        self._quick = Quick(study, examiner.grades, examiner.plan.samples)
-        self._result: Json | None = None
-
-    def of(self, measure: Measure) -> float:
-        if measure.quick is None:
-            value = measure.value(self._whole())
-        else:
-            self._quick.require()
-            value = measure.quick(self._quick)
-        if value is None or math.isnan(value):
-            raise NotHeldError(1.0, f"there is no {measure.title}")
-        return value
-
-    def _whole(self) -> Json:
+    def _whole(self, study: Study, quick: Quick) -> Json:
         """Return the result over few samples.
 
         Raises
@@ -113,16 +101,19 @@ class _Figures:
         NotHeldError
             If it is no answer.
         """
-        if self._result is None:
-            study, workspace = self._study, self._study.workspace
-            if workspace is not None:
-                samples = min(self._plan.samples, workspace.samples)
-                study = replace(study, workspace=replace(workspace, samples=samples))
-            self._result = self._plan.base.result(study)
-        reason = why_negative(self._result)
+        if study.workspace is not None:
+            study = replace(study, workspace=quick.evenly)
+        result = self.plan.base.result(study)
+        reason = why_negative(result)
         if reason:
-            raise NotHeldError(_violation(self._result), reason)
-        return self._result
+            raise NotHeldError(_violation(result), reason)
+        return result
+
+
+def broken(limit: Limit) -> str:
+    """Return that a limit is broken, for the reader of a report."""
+    bound = f"{limit.value:.6g} {limit.measure.dimension.unit}".rstrip()
+    return f"{limit.measure.title} is not {limit.words} {bound}"
 
 
 def _violation(result: Json) -> float:

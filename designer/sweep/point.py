@@ -16,8 +16,7 @@ from designer.documents.node import Key, Node
 from designer.effects.load import load_effects
 from designer.effects.registry import KnownEffects
 from designer.errors import DesignerError, InputError, described
-from designer.grades.kept import kept_catalogue
-from designer.grades.registry import Catalogue
+from designer.grades.registry import Catalogue, kept_catalogue
 from designer.io.config.reader import checked, study_of
 from designer.model.verdict import Verdict
 from designer.plugins.find import Plugins, find_plugins

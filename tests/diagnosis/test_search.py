@@ -30,19 +30,16 @@ def searcher(tmp_path) -> Searcher:
 
 
 def test_it_finds_and_ends(searcher) -> None:
-    found = searcher.run()
-    assert [effect.id for effect in found.found] == ["platform_mass"]
-    assert [step.added.id if step.added else None for step in found.steps] == [
-        "platform_mass",
-        None,
-    ]
+    steps, _, found = searcher.run()
+    assert [effect.id for effect in found] == ["platform_mass"]
+    assert [step.added.id if step.added else None for step in steps] == ["platform_mass", None]
 
 
 def test_it_ends_where_pruning_undoes_what_was_added(searcher, monkeypatch) -> None:
     monkeypatch.setattr(searcher, "_pruned", lambda found: [])
-    found = searcher.run()
-    assert found.found == ()
-    assert len(found.steps) == 1
+    steps, _, found = searcher.run()
+    assert found == ()
+    assert len(steps) == 1
 
 
 def test_what_does_not_foretell_is_left_out(searcher) -> None:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from designer.grades import kept
-from designer.grades.kept import kept_catalogue
-from designer.grades.registry import load_catalogue
+from designer.grades import registry
+from designer.grades.registry import kept_catalogue, load_catalogue
 from designer.plugins.find import find_plugins
 
 
@@ -21,7 +20,7 @@ def test_it_is_read_anew_for_other_plugins_and_changed_files_only(tmp_path: Path
 
 def test_the_users_folder_is_looked_at(tmp_path: Path, monkeypatch) -> None:
     folder = tmp_path / "catalog"
-    monkeypatch.setattr(kept, "user_catalogue_folder", lambda: folder)
+    monkeypatch.setattr(registry, "user_catalogue_folder", lambda: folder)
     plugins = find_plugins(with_plugins=False)
     first = kept_catalogue((), plugins)
     folder.mkdir()

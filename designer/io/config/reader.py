@@ -110,7 +110,7 @@ def _material_and_family(
     cable = section.cable
     if isinstance(cable, CableSection):
         return Material(cable.density, cable.youngs_modulus, cable.allowable_stress), None
-    from designer.grades.kept import kept_catalogue  # most studies name no grade
+    from designer.grades.registry import kept_catalogue  # most studies name no grade
 
     usual = (section.selection or SelectionSection()).safety_factor
     family = GradeFamily(cable.grade, cable.safety_factor or usual)
