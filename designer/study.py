@@ -15,7 +15,6 @@ from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED, KnownEffects
 from designer.errors import Fault, InputError
 from designer.model.cable import Material
-from designer.model.limits import RopeLimits
 from designer.model.load_case import EACH, LoadCase
 from designer.model.machine import TEMPERATE, Machine, Surroundings
 from designer.model.measurements import Measurements
@@ -26,6 +25,34 @@ from designer.model.workspace import Workspace
 _LIKELY_DIAMETER_M = 0.01  # Of the cable that stands in where none is given yet
 _FLAT = 1e-6
 Objective = Literal["mass", "cost", "drum_diameter", "max_tension", "stiffness"]
+
+
+@dataclass(frozen=True, slots=True)
+class RopeLimits:
+    """Limits that the chosen rope is checked against; None asks for nothing.
+
+    Parameters
+    ----------
+    stiffness_N_per_m : float or None
+        Least force per displacement of the platform, in any direction, cables of fixed length
+        [N/m].
+    excitation_Hz : (float, float) or None
+        Band from the lowest to the highest frequency of what shakes the robot [Hz], in which no
+        cable shall swing as a string.
+    drum_capacity_m : float or None
+        Rope that a drum takes up, beside its dead turns [m].
+    """
+
+    stiffness_N_per_m: checked.Positive | None = None
+    excitation_Hz: tuple[float, float] | None = None
+    drum_capacity_m: checked.Positive | None = None
+
+    def __post_init__(self) -> None:
+        checked.check_fields(self)
+        if self.excitation_Hz is not None:
+            low, high = self.excitation_Hz
+            checked.Number(above=0.0).require("excitation_Hz", low)
+            checked.Number(above=low).require("excitation_Hz", high)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from designer.documents.csv_text import csv_text, harmless
+from designer.documents.plain import csv_text, harmless
 from designer.explore.export import _csv
 from designer.report.sweep import _table
 

@@ -5,9 +5,9 @@ Apart from the tests of what it says: older versions of pydantic write the same 
 
 from __future__ import annotations
 
-from designer.documents.modeline import SCHEMA_FILE
 from designer.effects.registry import SHIPPED
 from designer.io.config.json_schema import schema_text
+from designer.io.config.moved import SCHEMA_FILE
 from designer.resources import example_file
 
 

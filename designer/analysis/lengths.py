@@ -9,7 +9,7 @@ import numpy as np
 
 from designer.analysis.analyse import Analysis
 from designer.arrays import BoolArray, FloatArray
-from designer.documents.csv_text import csv_text
+from designer.documents.plain import csv_text
 from designer.measured.names import length_names, tension_names
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict

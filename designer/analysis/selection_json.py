@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from designer.arrays import FloatArray
-from designer.documents.csv_text import csv_text
-from designer.documents.plain import plain, record
+from designer.documents.plain import csv_text, plain, record
 from designer.model.space import turn_of
 from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate

@@ -31,11 +31,12 @@ from designer.cli.options import (
     NoPlugins,
     Template,
     argument,
+    catalogue_of,
     option,
     output_option,
+    study_of,
 )
 from designer.cli.schema import schema, write_with_schema
-from designer.cli.studies import catalogue_of, study_of
 from designer.cli.sweep import sweep
 from designer.cli.verify import verify
 from designer.errors import (

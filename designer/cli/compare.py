@@ -6,8 +6,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from designer.cli.options import NoPlugins, Template, argument, output_option
-from designer.cli.studies import catalogue_of, study_of
+from designer.cli.options import (
+    NoPlugins,
+    Template,
+    argument,
+    catalogue_of,
+    output_option,
+    study_of,
+)
 
 if TYPE_CHECKING:
     from designer.analysis.comparison import Comparison

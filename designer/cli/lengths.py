@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from designer.cli.options import Config, NoPlugins, option, output_option
-from designer.cli.studies import catalogue_of, study_of
+from designer.cli.options import Config, NoPlugins, catalogue_of, option, output_option, study_of
 
 if TYPE_CHECKING:
     from designer.analysis.lengths import Lengths

@@ -1,15 +1,20 @@
-"""What the commands share: exit statuses, arguments and options."""
+"""What the commands share: exit statuses, arguments and options, the study that they name."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from designer.errors import Fault, InputError
 from designer.units import Dimension, QuantityError, read_quantity
+
+if TYPE_CHECKING:
+    from designer.grades.registry import Catalogue
+    from designer.plugins.find import Plugins
+    from designer.study import Study
 
 NEGATIVE_ANSWER = 1
 """Of a command that returns False."""
@@ -76,3 +81,26 @@ Template = Annotated[
         parser=_template_of,
     ),
 ]
+
+
+def study_of(config: Path, plugins: Plugins) -> Study:
+    """Read a study; names the plugins' effects that could not be used."""
+    from designer.cli.terminal import print_left_out
+    from designer.effects.load import load_effects
+    from designer.io.config import read_study
+
+    effects = load_effects(plugins)
+    print_left_out(effects.problems)
+    return read_study(config, effects, plugins)
+
+
+def catalogue_of(study: Study, plugins: Plugins) -> Catalogue:
+    """Load all grades; names those that could not be used, and knows those that a study names."""
+    from designer.cli.terminal import print_left_out
+    from designer.grades.registry import load_catalogue
+
+    catalogue = load_catalogue(study.catalogues, plugins=plugins)
+    problems = study.known_effects.problems
+    print_left_out(problem for problem in catalogue.problems if problem not in problems)
+    catalogue.require_grades_of(study)
+    return catalogue

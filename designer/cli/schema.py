@@ -37,7 +37,7 @@ def schema(
 
 def write_with_schema(study: Path, text: str) -> None:
     """Write a new study, and beside it the schema that its head names."""
-    from designer.documents.modeline import SCHEMA_FILE, with_modeline
+    from designer.io.config.moved import SCHEMA_FILE, with_modeline
     from designer.io.output import write_file, write_new_file
     from designer.io.process import undone_at_end
 

@@ -1,15 +1,22 @@
-"""Results as plain values and as JSON, which holds no number that is not finite."""
+"""Results as plain values, as JSON, which holds no number that is not finite, and as CSV.
+
+No spreadsheet takes a cell of the latter for a formula.
+"""
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from typing import Any
 
 import numpy as np
+
+_STARTS_A_FORMULA = ("=", "+", "-", "@", "\t")
 
 
 def finite(values: Any) -> Any:
@@ -56,3 +63,28 @@ def record(result: Any) -> dict[str, Any]:
 def json_text(values: Mapping[str, Any]) -> str:
     """Return results as JSON text."""
     return json.dumps(plain(values), indent=2, ensure_ascii=False, allow_nan=False)
+
+
+def csv_text(rows: Iterable[Iterable[Any]]) -> str:
+    """Return rows as CSV; None is an empty cell."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerows([harmless(cell) for cell in row] for row in rows)
+    return stream.getvalue()
+
+
+def harmless(cell: Any) -> Any:
+    """Return a cell that stays a text where it is one: with a ``'`` before what begins a formula.
+
+    A formula of a stranger's, such as a grade's name, could send away what the table holds.
+    """
+    if not isinstance(cell, str):
+        return cell
+    cell = cell.replace("\r", " ")  # the module leaves it unquoted, and it would begin a new row
+    if not cell.startswith(_STARTS_A_FORMULA):
+        return cell
+    try:
+        float(cell)
+    except ValueError:
+        return f"'{cell}"
+    return cell

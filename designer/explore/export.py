@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from designer.documents.csv_text import csv_text
+from designer.documents.plain import csv_text
 from designer.errors import OutputError
 from designer.explore.here import CableHere, here
 from designer.explore.map import MapAnswer, map_answer

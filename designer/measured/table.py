@@ -4,22 +4,36 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import islice
-from typing import BinaryIO, NoReturn
+from typing import BinaryIO, NamedTuple, NoReturn
 
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.errors import Fault, InputError
-from designer.measured.cells import MOST_ALIKE, TextCell, is_number, read_cells
 
 LARGEST_FILE_BYTES = 1_000_000_000
 _LONGEST_LINE_BYTES = 1_000_000
 _CONTROL_CODE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 _EXPECTED = "a CSV file: names of columns in its first line, numbers below"
+
+
+MOST_ALIKE = 20
+"""How many faults of one kind are told one by one; nobody reads more."""
+
+_NOTHING = frozenset({"", "nan", "-nan", "na"})
+
+
+class TextCell(NamedTuple):
+    """A cell that holds a text: its row, counted from 0, and the text."""
+
+    row: int
+    text: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -198,6 +212,40 @@ def _head(rows: Iterator[tuple[int, list[str]]], name: str) -> list[str]:
         if len(names) == 1 and mark in names[0]:
             _refuse(name, line, f"the columns are separated by {called}", "by commas")
     return names
+
+
+def read_cells(cells: Sequence[str], first_row: int) -> tuple[FloatArray, list[TextCell]]:
+    """Return the numbers of a column, NaN for nothing or a text, and the texts."""
+    with suppress(ValueError):  # the quick way, which most columns allow
+        return np.array([_float(cell) for cell in cells]), []
+    numbers = [_number(cell) for cell in cells]
+    texts = [
+        TextCell(row, cell.strip())
+        for row, (cell, number) in enumerate(zip(cells, numbers, strict=True), start=first_row)
+        if number is None
+    ]
+    return np.array([math.nan if number is None else number for number in numbers]), texts
+
+
+def is_number(cell: str) -> bool:
+    """Return whether a cell holds a number, be it infinite."""
+    return cell.strip().casefold() not in _NOTHING and _number(cell) is not None
+
+
+def _number(cell: str) -> float | None:
+    """Return the number, NaN for nothing, None for a text."""
+    if cell.strip().casefold() in _NOTHING:
+        return math.nan
+    try:
+        return _float(cell)
+    except ValueError:
+        return None
+
+
+def _float(cell: str) -> float:
+    if "_" in cell:  # Python reads '1_2' as 12
+        raise ValueError(cell)
+    return float(cell)
 
 
 @dataclass(slots=True)

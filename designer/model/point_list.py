@@ -11,8 +11,8 @@ from scipy.spatial import cKDTree
 
 from designer import checked
 from designer.arrays import BoolArray, FloatArray
-from designer.model.border import Border
 from designer.model.region import (
+    Border,
     BoxFrame,
     Plural,
     Position,

@@ -12,10 +12,10 @@ from numpy.typing import ArrayLike
 from designer import checked
 from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.model import polygon
-from designer.model.border import Border, ring
 from designer.model.region import (
     CHUNK,
     ON_A_SIDE,
+    Border,
     BoxFrame,
     Plural,
     Position,
@@ -28,6 +28,7 @@ from designer.model.region import (
     in_chunks,
     in_plan,
     require_ascending,
+    ring,
 )
 from designer.model.rings import (
     OPENING_RAD,

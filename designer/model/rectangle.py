@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 
 from designer import checked
 from designer.arrays import BoolArray, FloatArray, frozen_array
-from designer.model.border import Border, ring
 from designer.model.region import (
     CHUNK,
     ON_A_SIDE,
+    Border,
     BoxFrame,
     Plural,
     Position,
@@ -27,6 +27,7 @@ from designer.model.region import (
     in_chunks,
     in_plan,
     require_ascending,
+    ring,
 )
 from designer.model.rings import RINGS, SPOKES, outline_m, rings_m
 from designer.model.sobol import sobol

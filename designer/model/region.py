@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from designer import checked
 from designer.arrays import BoolArray, FloatArray, finite_array
-from designer.model.border import Border
+from designer.model import polygon
 from designer.model.rings import RINGS, SPOKES
 
 Sampling = Literal["low_discrepancy", "grid"]
@@ -25,6 +25,35 @@ CHUNK = 2**15
 """Positions per chunk; a power of two keeps Sobol sequences balanced."""
 ON_A_SIDE = 1e-6
 """Relative to the size of the region: a position that is no farther from a side lies on it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Border:
+    """The border of a region, piece by piece: most extremes lie there, the hardest in corners."""
+
+    vertices_m: FloatArray  # (n_vertices, 3): Corners [m]
+    edges_m: FloatArray  # (n_edges, 2, 3): Ends of its edges [m]
+    faces_m: list[FloatArray]  # (n_corners, 3): Corners of its faces, convex and in order [m]
+
+    def landmarks_m(self) -> FloatArray:
+        """Return vertices, middles of edges and middles of faces (n, 3) [m]."""
+        middles = [face.mean(axis=0) for face in self.faces_m]
+        return np.concatenate(
+            [self.vertices_m, self.edges_m.mean(axis=1), np.array(middles).reshape(-1, 3)]
+        )
+
+    def samples_m(self, rng: np.random.Generator, per_edge: int, per_face: int) -> FloatArray:
+        """Return random points on each edge, evenly spread, and on each face (n, 3) [m]."""
+        step = (np.arange(per_edge) + rng.random((len(self.edges_m), per_edge))) / per_edge
+        start, end = self.edges_m[:, :1], self.edges_m[:, 1:]
+        on_edges = (start + step[..., None] * (end - start)).reshape(-1, 3)
+        on_faces = [polygon.within_m(face, rng.random((per_face, 3))) for face in self.faces_m]
+        return np.concatenate([on_edges, *on_faces])
+
+
+def ring(corners_m: FloatArray) -> FloatArray:
+    """Return the edges of a polygon (n_corners, 2, 3), from each corner to the next [m]."""
+    return np.stack([corners_m, np.roll(corners_m, -1, axis=0)], axis=1)
 
 
 class Region(checked.Value, ABC):

@@ -13,8 +13,7 @@ from designer import __version__
 from designer.analysis.analyse import Analysis
 from designer.analysis.comparison import Comparison, ComparisonLine
 from designer.analysis.result_json import Json
-from designer.documents.csv_text import csv_text
-from designer.documents.plain import finite, json_text
+from designer.documents.plain import csv_text, finite, json_text
 from designer.optimum.plan import Limit, OptimisationPlan
 from designer.optimum.search import Searched
 from designer.optimum.trial import Trial

@@ -14,7 +14,7 @@ import numpy as np
 
 from designer.analysis.result_json import evaluates_answer
 from designer.arrays import BoolArray, FloatArray
-from designer.documents.csv_text import csv_text
+from designer.documents.plain import csv_text
 from designer.io.output import write_whole
 from designer.report.document import Report, Section
 from designer.report.figures import sweep as figures

@@ -7,8 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from designer.errors import Fault
-from designer.model.limits import RopeLimits
-from designer.study import Study
+from designer.study import RopeLimits, Study
 
 STUDY = """\
 robot: {anchors: [[0, 0, 9], [9, 0, 9], [4, 9, 9]], platform: {mass: 100}}

@@ -12,9 +12,9 @@ import pytest
 from jsonschema import Draft7Validator
 
 from designer.documents.document import document_of, read_document
-from designer.documents.modeline import SCHEMA_FILE, with_modeline, with_schema_moved
 from designer.effects.registry import SHIPPED
 from designer.io.config.json_schema import study_schema
+from designer.io.config.moved import SCHEMA_FILE, with_modeline, with_schema_moved
 from designer.resources import example_file, example_names
 
 SCHEMA = study_schema(SHIPPED.by_id)

@@ -12,7 +12,6 @@ from test_report_qualities import SIX
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
-from designer.model.limits import RopeLimits
 from designer.model.requirement import Requirement
 from designer.model.robot import Poses
 from designer.report.design.report import section as section_of
@@ -20,6 +19,7 @@ from designer.report.design.source import source_of
 from designer.selection.criteria import criteria_of
 from designer.selection.requirements import drum_of, evaluate, loads_of
 from designer.statics.inverse import solve_sagging
+from designer.study import RopeLimits
 
 pytestmark = pytest.mark.slow
 

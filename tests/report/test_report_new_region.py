@@ -11,9 +11,8 @@ import pytest
 import designer
 from designer.arrays import FloatArray
 from designer.explore.grids import map_grids
-from designer.model.border import Border
 from designer.model.prism import Prism
-from designer.model.region import Region
+from designer.model.region import Border, Region
 from designer.proof.encloser import why_not
 from designer.report.design.report import design_report
 from designer.report.render import render_html

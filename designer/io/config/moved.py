@@ -1,15 +1,43 @@
-"""A study's text for another folder: the relative paths in it as they are from there."""
+"""A study's text for another folder: the relative paths in it as they are from there.
+
+At its head a comment names the schema by which editors check it, without a network.
+"""
 
 from __future__ import annotations
 
 import os
+import re
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 from designer.documents import edits
 from designer.documents.document import Document
-from designer.documents.modeline import with_schema_moved
 from designer.documents.node import Key
+
+SCHEMA_FILE = "cdpr-designer.schema.json"
+"""What `designer init` calls the schema, beside the study."""
+
+_MODELINE = re.compile(r"^(# yaml-language-server: \$schema=)(\S+)$", re.MULTILINE)
+
+
+def with_modeline(text: str) -> str:
+    """Return a study with the comment before it; the path is relative to the study."""
+    return f"# yaml-language-server: $schema={SCHEMA_FILE}\n{text}"
+
+
+def with_schema_moved(text: str, start: Path, moved: Callable[[Path], str]) -> str:
+    """Return a study whose comment, if it has one, names the same schema from another folder.
+
+    ``start`` is the folder that the study was in; ``moved`` gives a path as it is from the other.
+    """
+
+    def renamed(match: re.Match[str]) -> str:
+        head, name = match.groups()
+        is_relative = "://" not in name and not Path(name).is_absolute()
+        return head + (moved(start / name) if is_relative else name)
+
+    return _MODELINE.sub(renamed, text)
 
 
 def moved_to(folder: Path, text: str, document: Document, start: Path) -> str:

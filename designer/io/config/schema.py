@@ -52,13 +52,12 @@ from designer.io.config.orientation import (
 )
 from designer.io.config.regions import AnyRegion, word_or_list
 from designer.io.config.uncertainty import UncertaintySection
-from designer.model.limits import RopeLimits
 from designer.model.measurements import LogColumn, Measurements, Reading
 from designer.model.region import Sampling
 from designer.model.robot import Poses
 from designer.model.space import Orientations
 from designer.model.workspace import SAG_MAX, HangsBelow, Workspace
-from designer.study import CableGroup, DocumentControl, Objective, Selection
+from designer.study import CableGroup, DocumentControl, Objective, RopeLimits, Selection
 from designer.units import describe
 
 _GRADES = "'all' or a list of grade ids"
