@@ -222,7 +222,10 @@ def _check(
     if unknown and without.free_readings(np.isfinite(without.measured.readings)) > unknown:
         progress("what is unknown, fitted without the effects")
         problems["fitted"] = (without, fit(without, bare.given, everywhere).settings)
-    held_rows = {name: _held(*model) for name, model in problems.items()}
+    held_rows = {
+        name: np.asarray(np.isfinite(problem.predicted(settings).length_m).all(axis=1))
+        for name, (problem, settings) in problems.items()
+    }
     compared = np.asarray(np.all([*held_rows.values()], axis=0))
     models = {}
     for name, (problem, settings) in problems.items():
@@ -241,10 +244,6 @@ def _check(
         structure=structure_left(declared, (), everywhere),
         outliers=outliers_of(declared.residual(()), measured.row_numbers),
     )
-
-
-def _held(problem: Problem, settings: tuple[Setting, ...]) -> BoolArray:
-    return np.asarray(np.isfinite(problem.predicted(settings).length_m).all(axis=1))
 
 
 def _model(

@@ -124,7 +124,10 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
     if not joint.turns:
         point = held_at_one_point(cable_set, attachments)
         position = None if position is None else moved(position, point)
-        limits = None if limits is None else _shifted(limits, point)
+        if limits is not None:
+            limits = tuple(
+                (low + d, high + d) for (low, high), d in zip(limits, point, strict=True)
+            )
     return ForeignRobot(
         file=bodies.file,
         name=link.attributes.get("name", "").strip()
@@ -218,10 +221,6 @@ def _limits(
     interval = " to ".join(f"[{' '.join(words)}]" for words in written)
     remarks["workspace"] = (f"The limits of the joint in the file span no region: {interval}.",)
     return None
-
-
-def _shifted(box: tuple[tuple[float, float], ...], by: Point) -> tuple[tuple[float, float], ...]:
-    return tuple((low + d, high + d) for (low, high), d in zip(box, by, strict=True))
 
 
 def _pulley_radius(cable_set: Element, remarks: Remarks) -> float | None:

@@ -146,16 +146,15 @@ class Quick:
         criteria = criteria_of(self._built.robot, self.workspace, self.selection)
         screen = Screen(criteria, self.selection, SILENT)
         for candidate in ranked:
-            if candidate.rejected_by is None and self._holds(candidate):
+            if candidate.rejected_by is not None:
+                continue
+            is_far = candidate.verification.utilisation < _CLOSE
+            allowable_N = governing(candidate.cases).loaded.cable.allowable_tension_N
+            if is_far or self._tension_N(candidate) <= allowable_N:
                 screen.rejects_any(candidate, (), ranked)
                 if candidate.rejected_by is None:
                     return candidate
         raise _nearest_to_holding(screen, ranked)
-
-    def _holds(self, candidate: Candidate) -> bool:
-        allowable = governing(candidate.cases).loaded.cable.allowable_tension_N
-        is_far = candidate.verification.utilisation < _CLOSE
-        return is_far or self._tension_N(candidate) <= allowable
 
     def _tension_N(self, candidate: Candidate) -> float:
         """Return what a rope meets in the case that governs, about its worst sample as well."""

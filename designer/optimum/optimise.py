@@ -66,7 +66,7 @@ def optimum_of(
     catalogue = plan.base.catalogue()
     catalogue.require_grades_of(given_study)
     examiner = Examiner(plan, promising(given_study, catalogue.grades))
-    with reporter.task("optimise", plan.budget.evaluations) as advance:
+    with reporter.task("optimise", plan.evaluations) as advance:
         searched = search(examiner, advance, stop)
     analysis = analyse(given_study, catalogue, reporter=reporter)
     return _verified(examiner, catalogue, searched, analysis, reporter)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -42,37 +41,18 @@ class Limit:
     """What a result may be at most, or at least [SI]."""
 
     measure: Measure
-    most: float = math.inf
-    least: float = -math.inf
+    value: float
+    words: Literal["at most", "at least"]
 
     def excess(self, value: float) -> float:
         """Return by how much a value breaks it, over the limit; zero where it is kept."""
-        over = max(value - self.most, self.least - value, 0.0)
-        bound = abs(self.most if value > self.most else self.least)
-        return over / bound if bound else over
+        beyond = value - self.value if self.words == "at most" else self.value - value
+        return max(beyond, 0.0) / (abs(self.value) or 1.0)
 
     def is_broken_by(self, result: Mapping[str, Any]) -> bool:
         """Tell whether a whole result breaks it, or does not have it."""
         value = self.measure.value(result)
         return value is None or self.excess(value) > _ROUNDING
-
-    @property
-    def words(self) -> str:
-        """The limit, such as ``at most``, without its value."""
-        return "at most" if math.isfinite(self.most) else "at least"
-
-    @property
-    def value(self) -> float:
-        """The one of the two that is set."""
-        return self.most if math.isfinite(self.most) else self.least
-
-
-@dataclass(frozen=True, slots=True)
-class SearchBudget:
-    """When to stop: designs that are tried, and seconds; None for no limit of time."""
-
-    evaluations: int
-    time_s: float | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,8 +71,12 @@ class OptimisationPlan:
         The same, to put values into.
     region_stays : bool
         Whether the text had to be changed for that.
-    variables, objective, limits, budget
-        What is chosen, for what, within what, for how long.
+    variables, objective, limits
+        What is chosen, for what, within what.
+    evaluations : int
+        Designs that are tried at most.
+    time_s : float or None
+        For how long [s]; None for no limit.
     starts, seed, samples : int
         Searches from different populations; of their random numbers; poses tried of each design.
     """
@@ -105,7 +89,8 @@ class OptimisationPlan:
     variables: tuple[Variable, ...]
     objective: Measure
     limits: tuple[Limit, ...]
-    budget: SearchBudget
+    evaluations: int
+    time_s: float | None
     starts: int
     seed: int
     samples: int
@@ -209,7 +194,8 @@ def read_optimisation(path: Path, with_plugins: bool) -> OptimisationPlan:
         variables=variables,
         objective=for_study(objective, study),
         limits=tuple(replace(limit, measure=for_study(limit.measure, study)) for limit in limits),
-        budget=SearchBudget(section.budget.evaluations or evaluations, section.budget.time),
+        evaluations=section.budget.evaluations or evaluations,
+        time_s=section.budget.time,
         starts=section.starts,
         seed=section.seed,
         samples=section.samples,
@@ -270,8 +256,7 @@ def _limits(
         except QuantityError as error:
             faults.append(document.fault(place, error.problem, error.expected))
             continue
-        upper, least = (limit, -math.inf) if sense == "at_most" else (math.inf, limit)
-        limits.append(Limit(measure, upper, least))
+        limits.append(Limit(measure, limit, "at most" if sense == "at_most" else "at least"))
     return tuple(limits)
 
 

@@ -102,7 +102,7 @@ class _Run:
 
     def all(self) -> None:
         """Run every start, then the simplex; ends by `_OverError` where time is up."""
-        total, starts = self._plan.budget.evaluations, self._plan.starts
+        total, starts = self._plan.evaluations, self._plan.starts
         for k in range(starts):
             self._start, self._round = k + 1, 0
             self._left = int((1.0 - _TO_POLISH) * total / starts)
@@ -201,7 +201,7 @@ class _Run:
         return self._known[values]
 
     def _check_budget(self) -> None:
-        limit_s = self._plan.budget.time_s
+        limit_s = self._plan.time_s
         if self._stop():
             raise _OverError("asked")
         if limit_s is not None and time.monotonic() - self.began_s > limit_s:

@@ -170,7 +170,7 @@ def test_a_price_is_asked_of_grades_that_have_none(tmp_path: Path) -> None:
 def test_the_shipped_example_reads() -> None:
     plan = read_optimisation(example_file("optimise/yard"), with_plugins=False)
     assert plan.given == (0.0, 0.0, 26.0)
-    assert plan.limits[0].most == 4500.0
+    assert plan.limits[0].value == 4500.0
     assert "optimise/yard" not in example_names()
 
 
