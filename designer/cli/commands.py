@@ -160,12 +160,10 @@ def report(
     from designer.cli.tables import print_summary
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out
     from designer.io.output import file_names, output_folder
-    from designer.plugins.find import find_plugins
     from designer.report.figures.opengl import begin_probe, why_no_scenes
     from designer.study import require_answerable
 
-    plugins = find_plugins(with_plugins=not no_plugins)
-    study = study_of(config, plugins)
+    study, plugins = study_of(config, no_plugins)
     require_answerable(study)
     folder = output or Path(f"{config.stem}-report")
     begin_probe()
@@ -200,10 +198,8 @@ def size(
     from designer.cli.tables import print_pose
     from designer.cli.terminal import announce_compiling
     from designer.documents.plain import json_text
-    from designer.plugins.find import find_plugins
 
-    plugins = find_plugins(with_plugins=not no_plugins)
-    study = study_of(config, plugins)
+    study, plugins = study_of(config, no_plugins)
     if study.selection is not None and study.selection.grades is not None:
         catalogue_of(study, plugins)  # misspelt grades are told here as by `report`
     announce_compiling()
@@ -247,10 +243,8 @@ def diagnose(
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out
     from designer.io.output import file_names, output_folder
     from designer.measured.read import read_measured
-    from designer.plugins.find import find_plugins
 
-    plugins = find_plugins(with_plugins=not no_plugins)
-    study = study_of(config, plugins)
+    study, plugins = study_of(config, no_plugins)
     measurements = study.measurements
     if measurements is None:
         raise InputError([study.source.fault("measurements", "is missing", "a table to compare")])

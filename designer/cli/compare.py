@@ -36,14 +36,10 @@ def compare(
     from designer.cli.terminal import ProgressBars, announce_compiling
     from designer.io.output import file_names, output_folder
     from designer.io.results import read_result
-    from designer.plugins.find import find_plugins
 
-    plugins = find_plugins(with_plugins=not no_plugins)
-    inputs = [path if path.suffix == ".json" else study_of(path, plugins) for path in (a, b)]
+    inputs = [path if path.suffix == ".json" else study_of(path, no_plugins) for path in (a, b)]
     sources = [read_result(source) if isinstance(source, Path) else source for source in inputs]
-    catalogues = [
-        None if isinstance(source, dict) else catalogue_of(source, plugins) for source in sources
-    ]
+    catalogues = [None if isinstance(source, dict) else catalogue_of(*source) for source in sources]
     announce_compiling()
 
     from designer.analysis.analyse import analyse
@@ -56,7 +52,7 @@ def compare(
         results = [
             source
             if isinstance(source, dict)
-            else analyse(source, catalogue, reporter=bars).to_dict()
+            else analyse(source[0], catalogue, reporter=bars).to_dict()
             for source, catalogue in zip(sources, catalogues, strict=True)
         ]
         comparison = compare_results(*results)

@@ -40,10 +40,8 @@ def lengths(
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
     from designer.io.output import write_file
     from designer.io.poses import read_poses
-    from designer.plugins.find import find_plugins
 
-    plugins = find_plugins(with_plugins=not no_plugins)
-    study = study_of(config, plugins)
+    study, plugins = study_of(config, no_plugins)
     table = read_poses(poses, study.robot)
     catalogue = catalogue_of(study, plugins)
     announce_compiling()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Annotated
 
 import numpy as np
@@ -114,70 +114,39 @@ class Cables:
 
     each: Sequence[Cable]
     of_pose: IntArray | None = None
+    linear_density_kg_per_m: FloatArray = field(init=False)
+    weight_N_per_m: FloatArray = field(init=False)
+    axial_stiffness_N: FloatArray = field(init=False)
+    allowable_tension_N: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
         if not self.each:
             raise ValueError("there must be a cable at least")
-
-    @property
-    def linear_density_kg_per_m(self) -> FloatArray:
-        """Mass per unstrained length [kg/m]."""
-        return self._figures("linear_density_kg_per_m")
-
-    @property
-    def weight_N_per_m(self) -> FloatArray:
-        """Weight per unstrained length [N/m]."""
-        return self._figures("weight_N_per_m")
-
-    @property
-    def axial_stiffness_N(self) -> FloatArray:
-        """EA [N]."""
-        return self._figures("axial_stiffness_N")
-
-    @property
-    def allowable_tension_N(self) -> FloatArray:
-        """Largest tension the design may use [N]."""
-        return self._figures("allowable_tension_N")
-
-    def _figures(self, name: str) -> FloatArray:
-        figures = np.array([getattr(cable, name) for cable in self.each])
-        return figures if self.of_pose is None else figures[self.of_pose][:, None]
+        for name in [figure.name for figure in fields(self)[2:]]:
+            figures = np.array([getattr(cable, name) for cable in self.each])
+            of_poses = figures if self.of_pose is None else figures[self.of_pose][:, None]
+            object.__setattr__(self, name, of_poses)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MaterialsByPose:
-    """Families of cables that differ from pose to pose, as `Cables`; arrays (n_poses,)."""
+    """Families of cables that differ from pose to pose, as `Cables`.
+
+    Its figures have the names of those of a `Material`, as arrays (n_poses,).
+    """
 
     each: Sequence[Material]
     of_pose: IntArray
+    density_kg_per_m3: FloatArray = field(init=False)
+    youngs_modulus_Pa: FloatArray = field(init=False)
+    allowable_stress_Pa: FloatArray = field(init=False)
+    elastic_compliance_per_m: FloatArray = field(init=False)
+    strength_length_m: FloatArray = field(init=False)
 
-    @property
-    def density_kg_per_m3(self) -> FloatArray:
-        """Mass per length over the area of the nominal circle (n_poses,) [kg/m³]."""
-        return self._figures("density_kg_per_m3")
-
-    @property
-    def youngs_modulus_Pa(self) -> FloatArray:
-        """EA over that area (n_poses,) [Pa]."""
-        return self._figures("youngs_modulus_Pa")
-
-    @property
-    def allowable_stress_Pa(self) -> FloatArray:
-        """Allowable tension over that area (n_poses,) [Pa]."""
-        return self._figures("allowable_stress_Pa")
-
-    @property
-    def elastic_compliance_per_m(self) -> FloatArray:
-        """Weight per length over EA (n_poses,) [1/m]."""
-        return self._figures("elastic_compliance_per_m")
-
-    @property
-    def strength_length_m(self) -> FloatArray:
-        """Length whose own weight reaches the allowable stress (n_poses,) [m]."""
-        return self._figures("strength_length_m")
-
-    def _figures(self, name: str) -> FloatArray:
-        return np.array([getattr(family, name) for family in self.each])[self.of_pose]
+    def __post_init__(self) -> None:
+        for name in [figure.name for figure in fields(self)[2:]]:
+            figures = np.array([getattr(family, name) for family in self.each])
+            object.__setattr__(self, name, figures[self.of_pose])
 
 
 @dataclass(frozen=True, slots=True)

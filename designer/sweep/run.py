@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections import Counter, deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import ExitStack
 from logging import CRITICAL, getLogger
 from multiprocessing import active_children
 from typing import Any
@@ -81,14 +81,22 @@ def _run_until_death(
 ) -> None:
     """Work through what waits; ends early, with the rest waiting, where a worker dies."""
     running: dict[Future[Solved], range] = {}
+
+    def may_add() -> bool:
+        """After a death tasks run alone, so that it shows which one is to blame."""
+        suspects = any(deaths[points] for points in (waiting[0], *running.values()))
+        return len(running) < (1 if suspects else _AHEAD * workers)
+
     try:
-        with make_executor() as executor, _cancelled_at_end(running):
+        with make_executor() as executor, ExitStack() as at_end:
+            # An executor's own end waits for what has not begun, and Dask's cannot cancel.
+            at_end.callback(lambda: [future.cancel() for future in running])
             while waiting or running:
                 if stop():
                     for process in active_children():
                         process.terminate()
                     return
-                while waiting and len(running) < _at_once(workers, waiting, running, deaths):
+                while waiting and may_add():
                     changes = [plan.changes(point) for point in waiting[0]]
                     with children_are_deaf():
                         running[executor.submit(solve_points, base, changes)] = waiting[0]
@@ -109,27 +117,6 @@ def _run_until_death(
             no_values = [None] * len(plan.keep)
             store.write(points, [(no_values, "its process ended without an answer")] * len(points))
             advance(len(points))
-
-
-@contextmanager
-def _cancelled_at_end(running: Iterable[Future[Solved]]) -> Iterator[None]:
-    """Cancel what has not begun; an executor's own end waits for it, and Dask's cannot cancel."""
-    try:
-        yield
-    finally:
-        for future in running:
-            future.cancel()
-
-
-def _at_once(
-    workers: int,
-    waiting: deque[range],
-    running: dict[Future[Solved], range],
-    deaths: Counter[range],
-) -> int:
-    """Return how many tasks may run: after a death one, so that it shows which one does that."""
-    suspects = any(deaths[points] for points in (waiting[0], *running.values()))
-    return 1 if suspects else _AHEAD * workers
 
 
 def _result(future: Future[Solved]) -> Solved:
