@@ -72,6 +72,13 @@ class InputError(DesignerError):
         self.faults = tuple(faults)
         super().__init__("\n".join(str(fault) for fault in self.faults))
 
+    @classmethod
+    def at(
+        cls, file: object, problem: str, expected: str = "", *, line: int | None = None
+    ) -> InputError:
+        """Return the error of one fault in a file, of all of it or in a line, or in an option."""
+        return cls([Fault(str(file), line, "", problem, expected)])
+
 
 class OutputError(DesignerError):
     """The output folder cannot be used."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from designer.cli.options import WRONG_INPUT, AsJson, NoPlugins, argument, quantity_of
-from designer.errors import Fault, InputError
+from designer.errors import InputError
 from designer.units import LENGTH
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def _material(name: str | None, catalogue: Catalogue) -> str | None:
     materials = sorted({grade.material for grade in catalogue.grades if grade.material})
     if name is not None and name.casefold() not in map(str.casefold, materials):
         problem = f"no grade is of {name!r}"
-        raise InputError([Fault("--material", None, "", problem, ", ".join(materials))])
+        raise InputError.at("--material", problem, ", ".join(materials))
     return name
 
 
@@ -96,7 +96,7 @@ def _diameter_m(text: str | None) -> float | None:
         problem = f"{text!r} is {diameter_m:g} m, which no rope has"
         is_bare = text.strip().replace(".", "", 1).isdigit()
         expected = f"'{text.strip()}mm'" if is_bare else "a diameter such as '12mm'"
-        raise InputError([Fault("--diameter", None, "", problem, expected)])
+        raise InputError.at("--diameter", problem, expected)
     return diameter_m
 
 

@@ -41,7 +41,6 @@ from designer.cli.sweep import sweep
 from designer.cli.verify import verify
 from designer.errors import (
     DesignerError,
-    Fault,
     InputError,
     MissingLibraryError,
     OutputError,
@@ -250,7 +249,7 @@ def diagnose(
         raise InputError([study.source.fault("measurements", "is missing", "a table to compare")])
     if data is not None:
         if not data.is_file():
-            raise InputError([Fault("--data", None, "", f"there is no file {data}", "a CSV file")])
+            raise InputError.at("--data", f"there is no file {data}", "a CSV file")
         measurements = replace(measurements, file=data)
         study = replace(study, measurements=measurements)
     measured = read_measured(study)
@@ -319,7 +318,7 @@ def explore(
     if missing:
         raise MissingLibraryError(missing)
     if config is not None and not config.is_file():
-        raise InputError([Fault(str(config), None, "", "there is no such file", "a study")])
+        raise InputError.at(config, "there is no such file", "a study")
     probe = begin_probe()
     plugins = find_plugins(with_plugins=not no_plugins)
     missing = why_no_window(probe)
@@ -361,7 +360,7 @@ def init(
         return
     if example not in example_names():
         names = ", ".join(example_names())
-        raise InputError([Fault("--example", None, "", f"there is no example {example!r}", names)])
+        raise InputError.at("--example", f"there is no example {example!r}", names)
     target = path or Path(f"{example}.yaml")
     write_with_schema(target, example_file(example).read_text(encoding="utf-8"))
     typer.echo(f"{target} written. Next:  designer report {shlex.quote(str(target))}")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from designer.cli.options import NoPlugins, argument, option, output_option, quantity_of
-from designer.errors import Fault, InputError
+from designer.errors import InputError
 from designer.units import LENGTH, MASS, NUMBER, Dimension
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def _number(
     def read(written: str) -> float:
         value = quantity_of(name, written, dimension)
         if value < least:
-            raise _refused(name, f"{written} is too small", f"{least:g} or more")
+            raise InputError.at(name, f"{written} is too small", f"{least:g} or more")
         return value
 
     return option(name, metavar=metavar, text=text, parser=read)
@@ -39,15 +39,11 @@ def _vector(name: str, text: str, dimension: Dimension) -> Any:
     def read(written: str) -> Point:
         parts = [quantity_of(name, part, dimension) for part in written.strip("[] ").split(",")]
         if len(parts) != 3:
-            raise _refused(name, f"{written!r} is no point", "three: X,Y,Z")
+            raise InputError.at(name, f"{written!r} is no point", "three: X,Y,Z")
         x, y, z = parts
         return x, y, z
 
     return option(name, metavar="X,Y,Z", text=text, parser=read)
-
-
-def _refused(name: str, problem: str, expected: str) -> InputError:
-    return InputError([Fault(name, None, "", problem, expected)])
 
 
 def import_robot(

@@ -8,7 +8,7 @@ import sys
 from importlib.machinery import PathFinder
 from pathlib import Path
 
-from designer.errors import Fault, InputError, OutputError
+from designer.errors import InputError, OutputError
 from designer.io.output import output_folder
 from designer.resources import data_folder
 
@@ -36,7 +36,7 @@ def write_plugin(name: str, folder: Path, *, effect: bool = False) -> None:
     problem = _problem(name)
     if problem:
         expected = "a new name such as acme-ropes: lower-case letters, digits and single '-'"
-        raise InputError([Fault("NAME", None, "", problem, expected)])
+        raise InputError.at("NAME", problem, expected)
     if folder.exists() or folder.is_symlink():
         raise OutputError(f"{folder}: exists already (expected a new folder)")
     import jinja2

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from designer.errors import Fault, InputError
+from designer.errors import InputError
 from designer.units import Dimension, QuantityError, read_quantity
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ INTERRUPTED = 130
 def path_of(text: str) -> Path:
     """Return the path that an argument names; an empty one names nothing."""
     if not text.strip():  # such as "$OUT" where nothing is in it; pathlib takes it as '.'
-        raise InputError([Fault("command line", None, "", "a path is empty", "a file or folder")])
+        raise InputError.at("command line", "a path is empty", "a file or folder")
     return Path(text)
 
 
@@ -35,7 +35,7 @@ def quantity_of(option: str, text: str, dimension: Dimension) -> float:
     try:
         return read_quantity(text, dimension)
     except QuantityError as error:
-        raise InputError([Fault(option, None, "", error.problem, error.expected)]) from None
+        raise InputError.at(option, error.problem, error.expected) from None
 
 
 def _template_of(text: str) -> Path:

@@ -10,7 +10,7 @@ from designer.diagnosis.free_poses import FreePredictor, first_poses
 from designer.diagnosis.problem import Predictor
 from designer.diagnosis.statistics import heldout_rows
 from designer.effects.effect import NEEDS, Effect, Setting, as_built
-from designer.errors import Fault, InputError
+from designer.errors import InputError
 from designer.model.cable import Cable
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
@@ -55,7 +55,7 @@ class Case:
 
     def fault(self, problem: str, expected: str) -> InputError:
         """Return what is wrong with the data as a whole."""
-        return InputError([Fault(str(self.measurements.file), None, "", problem, expected)])
+        return InputError.at(self.measurements.file, problem, expected)
 
     def check_held(self, predict: Predictor) -> None:
         """Refuse poses most of which no cables hold: frames, units or exit points are mixed up."""

@@ -89,7 +89,7 @@ def document_of(raw: bytes, name: str, kind: FileKind = STUDY) -> Document:
 
 
 def _refuse(name: str, line: int | None, problem: str, expected: str = "") -> NoReturn:
-    raise InputError([Fault(name, line, "", problem, expected)])
+    raise InputError.at(name, problem, expected, line=line)
 
 
 def decode(raw: bytes, name: str) -> str:

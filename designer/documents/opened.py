@@ -12,7 +12,7 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
-from designer.errors import Fault, InputError
+from designer.errors import InputError
 
 LARGEST_FILE_BYTES = 1_000_000
 _KINDS = {
@@ -81,7 +81,7 @@ def read_bytes(path: Path, name: str, kind: str = "a YAML file") -> bytes:
     except (OSError, ValueError) as error:
         problem = f"the file cannot be read: {reason(error)}"
     expected = f"{kind} of at most {LARGEST_FILE_BYTES / 1e6:g} MB"
-    raise InputError([Fault(name, None, "", problem, expected)])
+    raise InputError.at(name, problem, expected)
 
 
 def _require_regular(mode: int) -> None:

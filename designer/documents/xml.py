@@ -13,7 +13,7 @@ from xml.sax.xmlreader import AttributesImpl, InputSource, Locator
 
 from designer.documents.node import printable
 from designer.documents.opened import read_bytes
-from designer.errors import Fault, InputError
+from designer.errors import InputError
 
 DEEPEST_NESTING = 64
 MOST_ELEMENTS = 100_000
@@ -80,7 +80,7 @@ class Element:
 
     def refuse(self, problem: str, expected: str = "") -> NoReturn:
         """Raise an `InputError` at this line."""
-        raise InputError([Fault(self.file, self.line, "", problem, expected)])
+        raise InputError.at(self.file, problem, expected, line=self.line)
 
 
 class _Builder(ContentHandler):
@@ -150,11 +150,11 @@ def xml_of(raw: bytes, name: str) -> Element:
         parser.parse(source)
     except SAXParseException as error:
         problem = f"this is not valid XML: {printable(error.getMessage())}"
-        raise InputError([Fault(name, error.getLineNumber(), "", problem)]) from None
+        raise InputError.at(name, problem, line=error.getLineNumber()) from None
     except DefusedXmlException:
-        raise InputError([Fault(name, None, "", "the file declares entities", "none")]) from None
+        raise InputError.at(name, "the file declares entities", "none") from None
     except (LookupError, ValueError) as error:  # an encoding that Python or the parser lacks
         problem = f"this is not valid XML: {printable(str(error))}"
-        raise InputError([Fault(name, None, "", problem, "XML in UTF-8")]) from None
+        raise InputError.at(name, problem, "XML in UTF-8") from None
     assert builder.root is not None
     return builder.root

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from designer.documents.xml import Element, read_xml
-from designer.errors import Fault, InputError
+from designer.errors import InputError
 from designer.foreign.robot import ORIGIN, ForeignRobot, Point, Remarks, held_at_one_point, moved
 
 BODIES, CABLES = "bodies", "cables"
@@ -83,7 +83,7 @@ def _beside(path: Path, kind: str, suffix: str) -> Path:
         problem = f"holds the {kind} alone"
         if separator:
             problem += f", and there is no {counterpart.name} beside it"
-        raise InputError([Fault(str(path), None, "", problem, option)])
+        raise InputError.at(path, problem, option)
     return counterpart
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from designer.errors import Fault, InputError
+from designer.errors import InputError
 from designer.foreign.robot import ForeignRobot, Point
 from designer.units import DENSITY, FORCE, MASS, STRESS, format_SI
 
@@ -100,18 +100,12 @@ def gaps(text: str) -> tuple[Gap, ...]:
 def _require_upright(robot: ForeignRobot, gravity: Point) -> None:
     normal = robot.plane_normal
     if normal is not None and abs(np.dot(normal, gravity)) > 1e-9 * np.linalg.norm(gravity):
-        raise InputError(
-            [
-                Fault(
-                    robot.file,
-                    None,
-                    "",
-                    "the platform moves in a plane that is not upright, so that nothing but a "
-                    "table carries its weight",
-                    "an upright plane; --gravity where the frame is drawn lying, such as 0,-1,0",
-                )
-            ]
+        problem = (
+            "the platform moves in a plane that is not upright, so that nothing but a table "
+            "carries its weight"
         )
+        expected = "an upright plane; --gravity where the frame is drawn lying, such as 0,-1,0"
+        raise InputError.at(robot.file, problem, expected)
 
 
 def _robot(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:

@@ -128,7 +128,7 @@ def grade_files(path: Path) -> list[Path]:
     files = [entry for entry in entries if _is_grade_file(entry)]
     if len(entries) > MOST_ENTRIES or len(files) > MOST_FILES:
         expected = f"at most {MOST_FILES} grade files, and {MOST_ENTRIES} files in all"
-        raise InputError([Fault(str(path), None, "", "the folder holds too many files", expected)])
+        raise InputError.at(path, "the folder holds too many files", expected)
     return sorted(files)
 
 
@@ -136,7 +136,7 @@ def _entries(folder: Path) -> Iterator[Path]:
     def refuse(error: OSError) -> None:
         reason = (error.strerror or "not readable").lower()
         problem = f"the folder cannot be listed: {reason}"
-        raise InputError([Fault(str(error.filename or folder), None, "", problem)])
+        raise InputError.at(error.filename or folder, problem)
 
     for place, folders, names in os.walk(folder, onerror=refuse):
         folders[:] = [name for name in folders if not name.startswith(".")]

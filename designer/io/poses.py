@@ -59,9 +59,7 @@ def read_poses(path: Path, robot: Robot) -> PoseTable:
         file = open_input(path)
     except (OSError, ValueError) as error:
         expected = "a CSV file with columns x_m, y_m, z_m"
-        raise InputError(
-            [Fault("--poses", None, "", f"{path}: {reason(error)}", expected)]
-        ) from None
+        raise InputError.at("--poses", f"{path}: {reason(error)}", expected) from None
     with file:
         table = read_table(file, str(path))
     columns = {column.name: column for column in table.columns}

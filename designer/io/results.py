@@ -42,16 +42,14 @@ def read_result(path: Path) -> Json:
         values = json.loads(read_input(path))
     except (OSError, ValueError, RecursionError) as error:
         reason = (error.strerror or "").lower() if isinstance(error, OSError) else str(error)
-        raise InputError(
-            [Fault(str(path), None, "", f"cannot be read: {reason}", _RESULT)]
-        ) from None
+        raise InputError.at(path, f"cannot be read: {reason}", _RESULT) from None
     if not isinstance(values, dict) or "provenance" not in values:
-        raise InputError([Fault(str(path), None, "", "is no result", _RESULT)])
+        raise InputError.at(path, "is no result", _RESULT)
     origin = values["provenance"]
     written_by = str(origin.get("version", "")) if isinstance(origin, dict) else ""
     why = why_unreadable(values.get("format"), RESULT_FORMAT, written_by)
     if why is not None:
         raise InputError([Fault(str(path), None, "format", *why)])
     if "workspace" not in values:  # an optimise.json would compare as a result of nothing
-        raise InputError([Fault(str(path), None, "", "is no result", _RESULT)])
+        raise InputError.at(path, "is no result", _RESULT)
     return {"format": 1, **values}

@@ -61,7 +61,7 @@ def read_measured(study: Study) -> Measured:
         has_turned = poses.rotation.ndim > 2 and np.ptp(poses.rotation, axis=0).max() > 1e-6
         if not has_moved and not has_turned:
             problem = "all rows are at one pose, so nothing can be told apart"
-            raise InputError([Fault(table.name, None, "", problem, "different poses")])
+            raise InputError.at(table.name, problem, "different poses")
     else:
         poses = Poses.at(np.full((int(rows.kept.sum()), 3), np.nan))
     measured = _measured(assigned, rows, poses, study.robot.n_cables, settled=measurements.settled)
@@ -116,7 +116,7 @@ def _refuse_without_spare_readings(robot: Robot, measured: Measured, table: LogT
     """Refuse rows that readings only just settle: nothing is left to test the model with."""
     if not robot.has_enough_cables:
         problem = "poses of a platform with fewer cables than degrees of freedom cannot be told"
-        raise InputError([Fault(table.name, None, "", problem, "measured poses")])
+        raise InputError.at(table.name, problem, "measured poses")
     n_readings = int(measured.n_readings.max())
     if n_readings <= robot.n_cables:
         spare = robot.n_cables - robot.degrees_of_freedom
@@ -126,7 +126,7 @@ def _refuse_without_spare_readings(robot: Robot, measured: Measured, table: LogT
             f"rows have at most {n_readings} readings, for {robot.n_cables} unknowns: {unknown}"
         )
         expected = f"more than {robot.n_cables}, so lengths and tensions; or measured poses"
-        raise InputError([Fault(table.name, None, "", problem, expected)])
+        raise InputError.at(table.name, problem, expected)
 
 
 def _measured(

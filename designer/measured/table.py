@@ -158,7 +158,7 @@ def read_table(file: BinaryIO, name: str) -> LogTable:
 
 
 def _refuse(name: str, line: int | None, problem: str, expected: str = _EXPECTED) -> NoReturn:
-    raise InputError([Fault(name, line, "", problem, expected)])
+    raise InputError.at(name, problem, expected, line=line)
 
 
 def _lines(file: BinaryIO, name: str, see: Callable[[bytes], None]) -> Iterator[str]:
