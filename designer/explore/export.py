@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any, Literal
 
@@ -21,6 +21,8 @@ from designer.progress import Reporter
 
 What = Literal["report", "picture", "tables", "vtk"]
 """What can be exported; a picture is taken by the window itself."""
+Files = tuple[Path, ...]
+"""What was written; the first is the one to open."""
 COLUMNS = {
     "utilisation": "utilisation",
     "diameter": "diameter_m",
@@ -36,13 +38,6 @@ COLUMNS = {
 _ALL = CHEAP | {"stiffness", "unserved"}
 
 
-@dataclass(frozen=True, slots=True)
-class Exported:
-    """What was written; the first is the one to open."""
-
-    files: tuple[Path, ...]
-
-
 def export(
     question: Question,
     reporter: Reporter,
@@ -50,7 +45,7 @@ def export(
     content: What,
     target: Path,
     ropes: Ropes | None = None,
-) -> Exported:
+) -> Files:
     """Write files, whole or not at all.
 
     Parameters
@@ -75,7 +70,7 @@ def export(
     return _vtk(question, target)
 
 
-def _report(question: Question, reporter: Reporter, folder: Path) -> Exported:
+def _report(question: Question, reporter: Reporter, folder: Path) -> Files:
     """Write the report, by the pipeline of the command."""
     from designer.analysis.analyse import analyse
     from designer.io.results import write_results
@@ -85,15 +80,13 @@ def _report(question: Question, reporter: Reporter, folder: Path) -> Exported:
     begin_probe()
     with output_folder(folder, REPORT_FILES) as building:
         analysis = analyse(question.study, question.catalogue, building, reporter)
-        with reporter.task("report", 1) as advance:
-            write_report_pages(analysis, building)
-            advance(1)
+        write_report_pages(analysis, building, reporter=reporter)
         write_results(analysis, building)
         written = [name for name in REPORT_FILES if (building / name).exists()]
-    return Exported(tuple(folder / name for name in written))
+    return tuple(folder / name for name in written)
 
 
-def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Exported:
+def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Files:
     pose = here(question)
     tables = {
         "cables.csv": _csv([f.name for f in fields(CableHere)], map(asdict, pose.cables)),
@@ -111,7 +104,7 @@ def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Exported:
     with output_folder(folder) as building:
         for name, text in tables.items():
             (building / name).write_bytes(text.encode())
-    return Exported(tuple(folder / name for name in tables))
+    return tuple(folder / name for name in tables)
 
 
 def map_columns(chart: MapAnswer) -> dict[str, Any]:
@@ -136,7 +129,7 @@ def _csv(names: Sequence[str], rows: Iterable[dict[str, Any]]) -> str:
     return csv_text([names, *cells])
 
 
-def _vtk(question: Question, target: Path) -> Exported:
+def _vtk(question: Question, target: Path) -> Files:
     """Write the map as one unstructured grid, with what the columns of the table hold."""
     import pyvista as pv
 
@@ -155,4 +148,4 @@ def _vtk(question: Question, target: Path) -> Exported:
         pieces.append(piece, name)
     with output_folder(target.parent) as building:
         pieces.combine().save(building / target.name)
-    return Exported((target,))
+    return (target,)

@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.explore.grids import map_grids
 from designer.explore.quantities import BY_KEY, CHEAP
 from designer.explore.question import Question, Rope, RopePerCable
 from designer.model.cable import Cable, Cables
 from designer.model.load_case import STATIC
+from designer.model.region import Region
+from designer.model.rings import every_second
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
@@ -31,6 +32,10 @@ from designer.workspace.sweep import map_workspace
 
 _PIECE = 2**12
 """Places in one call of the solver: what a pose that is waited for has to wait at most."""
+_MOST_POINTS = 3000
+"""Of a list of points: as many as are told apart on a screen."""
+_RINGS, _SPOKES, _ROWS = 45, 120, 24
+"""Of a fine grid: its faces are a few pixels wide."""
 Values = Mapping[str, FloatArray]
 """By the key of the quantity, SI; NaN where a place has none."""
 
@@ -42,7 +47,7 @@ class MapAnswer:
     Parameters
     ----------
     grids : mapping of str to array (n, m, 3)
-        Positions [m], see `designer.explore.grids.map_grids`; empty without a workspace.
+        Positions [m], see `map_grids`; empty without a workspace.
     values : mapping of str to mapping of str to array (n, m)
         Of each grid the values by the keys of `designer.explore.quantities`, SI, each position in
         the orientation that asks for the most there; NaN where there is none. Beside them, as 0
@@ -82,6 +87,23 @@ class MapAnswer:
         return np.concatenate(each) if each else np.empty(0)
 
 
+def map_grids(region: Region, slice_share: float, *, fine: bool) -> Mapping[str, FloatArray]:
+    """Return grids of positions (n, m, 3) [m], by their names.
+
+    Of a prism its ``top``, ``bottom`` and ``wall``, and ``slice``, level, at a share of the height;
+    of a rectangle ``section``; of a list ``points`` (n, 1, 3), thinned out where there are very
+    many. Unless ``fine``, every second row and column.
+    """
+    grids = dict(region.outside_m(_RINGS, _SPOKES, _ROWS))
+    if not grids:
+        points = np.concatenate([*region.samples_m(_MOST_POINTS, "grid", 0)])
+        return {"points": points[:: -(-len(points) // _MOST_POINTS)][:, None]}
+    section = region.section_m(slice_share, _RINGS, _SPOKES)
+    if section is not None and not region.is_upright:
+        grids["slice"] = section
+    return grids if fine else {name: grid[every_second(grid)] for name, grid in grids.items()}
+
+
 def map_answer(
     question: Question,
     *,
@@ -96,7 +118,7 @@ def map_answer(
     Parameters
     ----------
     fine, slice_share
-        Of the grids, see `designer.explore.grids.map_grids`.
+        Of the grids, see `map_grids`.
     parts : frozenset of str, optional
         Names of the grids to compute; all if left out.
     quantities : frozenset of str

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -118,51 +117,27 @@ def _covariates(measured: Measured) -> dict[str, FloatArray]:
     return {**covariates, **measured.covariates}
 
 
-@dataclass(frozen=True, slots=True)
-class FoundEffect:
-    """An effect that the model lacked: its name, its values in words, and its rivals."""
-
-    key: str
-    values: str
-    rivals: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class ErrorChange:
-    """Error on rows that no fit has seen, of lengths or tensions, in an SI unit."""
-
-    reading: str
-    unit: str
-    before: float
-    after: float
-    noise: float
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class DiagnosisAnswer:
     """What a diagnosis came to.
 
     Parameters
     ----------
-    title, text, tone : str
-        The answer in a few words, in sentences, and ``good``, ``doubt`` or ``bad``.
-    effects : tuple of FoundEffect
-        What was found.
-    errors : tuple of ErrorChange
-        Before and after.
+    title, text : str
+        The answer in a few words, and in sentences.
+    effects : tuple of str
+        What the model lacked, each with its fitted values.
+    errors : tuple of str
+        On rows that no fit has seen, of lengths and tensions: before, after, and the noise.
     diagnosed_text : str
         The study with what was fitted and found; a text for the session.
-    json : mapping
-        What ``diagnosis.json`` holds.
     """
 
     title: str
     text: str
-    tone: str
-    effects: tuple[FoundEffect, ...]
-    errors: tuple[ErrorChange, ...]
+    effects: tuple[str, ...]
+    errors: tuple[str, ...]
     diagnosed_text: str
-    json: dict[str, Any]
 
 
 def diagnosis_answer(question: Question, progress: Callable[[str], None]) -> DiagnosisAnswer:
@@ -173,37 +148,26 @@ def diagnosis_answer(question: Question, progress: Callable[[str], None]) -> Dia
     InputError
         If the study has no measurements, or the data are not as they should be.
     """
+    from designer.report.diagnosis.quantity import quantities
     from designer.report.diagnosis.report import verdict
+    from designer.report.diagnosis.words import fitted_values
 
     study = question.study
     measured = read_measured(study)
     assert study.measurements is not None  # else reading has refused
     diagnosis = diagnose_study(study, study.measurements, measured, progress)
     answer = verdict(diagnosis)
-    stages = diagnosis.stages[0], diagnosis.final
-    kinds = (
-        ("length", "m", [stage.length_m for stage in stages], diagnosis.noise.length_m),
-        ("tension", "N", [stage.tension_N for stage in stages], diagnosis.noise.tension_N),
-    )
     return DiagnosisAnswer(
         title=answer.title,
         text=answer.text,
-        tone=answer.tone,
         effects=tuple(
-            FoundEffect(
-                finding.effect.key,
-                ", ".join(
-                    f"{k} = {e.value:.4g} ± {e.std:.2g}" for k, e in finding.parameters.items()
-                ),
-                finding.rivals,
-            )
+            f"{finding.effect.key}: {fitted_values(finding.effect, finding.parameters)}"
             for finding in diagnosis.findings
         ),
         errors=tuple(
-            ErrorChange(name, unit, was.heldout.value, now.heldout.value, noise)
-            for name, unit, (was, now), noise in kinds
-            if was is not None and now is not None
+            f"error of {kind.name}: {kind.with_unit(before.heldout.value)} before, "
+            f"{kind.with_unit(after.heldout.value)} after, noise {kind.with_unit(kind.noise)}"
+            for kind, before, after in quantities(diagnosis)
         ),
         diagnosed_text=diagnosed_config(diagnosis, question.path.parent, question.text),
-        json=diagnosis.to_dict(),
     )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from designer.errors import Fault, InputError
-from designer.explore.export import Exported
+from designer.explore.export import Files
 from designer.explore.question import Question
 from designer.explore.reading import text_of
 from designer.io.output import file_names, output_folder
@@ -62,7 +62,7 @@ def optimised_study(question: Question, reporter: Reporter, *, plan: Path) -> Op
     )
 
 
-def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: Path) -> Exported:
+def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: Path) -> Files:
     """Solve a sweep of the study in the window, as `designer sweep` does.
 
     Writes the store ``target`` and a folder with its report beside it. A sweep that was given up
@@ -90,7 +90,7 @@ def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: P
         write_sweep(read_store(target), plan.stem, building)
         written = file_names(building)
     pages = sorted(written, key=lambda name: not name.endswith(".html"))
-    return Exported((*(folder / name for name in pages), target))
+    return (*(folder / name for name in pages), target)
 
 
 def _require_study_of(question: Question, plan: Path, study: str) -> None:

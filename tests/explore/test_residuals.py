@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -96,9 +97,11 @@ def test_the_diagnosis_finds_what_is_wrong_and_writes_it_into_the_text(measured:
     told: list[str] = []
     found = diagnosis_answer(question_of(measured), told.append)
     assert told
-    assert [one.key for one in found.effects] == ["length_offset"]
-    (length,) = [one for one in found.errors if one.reading == "length"]
-    assert length.after < 0.2 * length.before
+    (effect,) = found.effects
+    assert effect.startswith("length_offset: ")
+    (length,) = [error for error in found.errors if error.startswith("error of length: ")]
+    before, after = (float(figure) for figure in re.findall(r"([\d.]+)\xa0mm", length)[:2])
+    assert after < 0.2 * before
     assert "180.0 kg" in found.diagnosed_text
     assert "# by the maker" in found.diagnosed_text
     assert measured.set_text(found.diagnosed_text) == ()

@@ -10,7 +10,7 @@ import pytest
 
 import designer
 from designer.arrays import FloatArray
-from designer.explore.grids import map_grids
+from designer.explore.map import map_grids
 from designer.model.prism import Prism
 from designer.model.region import Border, Region
 from designer.proof.encloser import why_not

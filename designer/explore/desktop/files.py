@@ -15,7 +15,8 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 from designer.errors import DesignerError
 from designer.explore.desktop.live_session import LONG, NAMES, LiveSession
 from designer.explore.desktop.settings import Settings
-from designer.explore.export import Exported, What
+from designer.explore.export import Files as Written
+from designer.explore.export import What
 from designer.explore.plans import OptimisedStudy
 from designer.explore.session import Session
 from designer.plugins.find import Plugins
@@ -65,12 +66,12 @@ class Files(QObject):
         self._parent, self._live = parent, live
         self._plugins, self._settings = plugins, settings
         self._disk = "same"
-        self._exported: Exported | None = None
+        self._written: Written = ()
         self._optimised: OptimisedStudy | None = None
         self.watch = QTimer(self, interval=_DISK_MS)
         self.watch.timeout.connect(self.look_at_disk)
         self.watch.start()
-        live.listen(self._show_exported, "export", "sweep")
+        live.listen(self._show_written, "export", "sweep")
         live.listen(self._show_optimised, "optimise")
 
     # Studies
@@ -248,8 +249,8 @@ class Files(QObject):
             self.save()
         elif button == "Take over":
             self._take_over_optimised()
-        elif button == "Open" and self._exported is not None:
-            QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._exported.files[0])))
+        elif button == "Open" and self._written:
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._written[0])))
 
     # Plans
 
@@ -323,14 +324,14 @@ class Files(QObject):
         ropes = self._live.answers.get("ropes") if content == "tables" else None
         self._live.begin_long("export", content=content, target=target, ropes=ropes)
 
-    def _show_exported(self, exported: Exported | None) -> None:
+    def _show_written(self, files: Written | None) -> None:
         """Say what was written, and offer to open it."""
-        self._exported = exported
-        if exported is None:
+        self._written = files or ()
+        if not files:
             self.notice.emit("", ())
             return
-        self._live.message.emit(f"Written: {', '.join(str(path) for path in exported.files)}")
-        main = exported.files[0]
+        self._live.message.emit(f"Written: {', '.join(map(str, files))}")
+        main = files[0]
         self.notice.emit(f"{main.name} is in {main.parent}.", ("Open", "Close"))
 
 

@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QWidget
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QBrush, QColor, QPainter, QPaintEvent, QPen, QPixmap
+from PySide6.QtWidgets import QFormLayout, QFrame, QLabel, QVBoxLayout, QWidget
 
 from designer.arrays import FloatArray
 from designer.explore.desktop import theme
 from designer.explore.desktop.painting import Key
+from designer.explore.desktop.widgets import fill, label
 from designer.report import format as fmt
 from designer.report.figures.colours import Steps
 from designer.report.figures.view import View
@@ -124,27 +125,34 @@ class Overlay(QWidget):
         painter.drawText(box.adjusted(8, 5, -8, -5), 0, text)
 
 
-_WIDTH, _BAR, _MARGIN = 136, 14, 8
+_WIDTH_PX, _BAR_PX, _MARGIN_PX = 136, 14, 8
 
 
-class Legend(QWidget):
+class Legend(QFrame):
     """Stands over the scene and lets the mouse through."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self.setObjectName("legend")
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self.title = self.note = ""
-        self.is_old = False
+        self.setFixedWidth(_WIDTH_PX)
         self.steps: Steps | None = None
-        self.keys: tuple[Key, ...] = ()
+        self._meanings: tuple[str, ...] = ()
+        self._title, self._note = label("", "heading"), label("", "muted")
+        self._bar, self._keys = ColourBar(), QFormLayout()
+        self._keys.setVerticalSpacing(4)
+        for text in (self._title, self._note):
+            text.setWordWrap(True)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(*[_MARGIN_PX] * 4)
+        fill(rows, self._title, self._note, self._bar, self._keys)
 
     @property
     def texts(self) -> list[str]:
         """All that is written, from the top."""
         labels = [] if self.steps is None else [fmt.trimmed(float(t), 6) for t in self.steps.ticks]
-        notes = filter(None, [self.note])
-        return [self.title, *notes, *labels[::-1], *(key.meaning for key in self.keys)]
+        notes = filter(None, [self._note.text()])
+        return [self._title.text(), *notes, *labels[::-1], *self._meanings]
 
     def show_meaning(
         self,
@@ -156,113 +164,77 @@ class Legend(QWidget):
         is_old: bool = False,
     ) -> None:
         """Show the title with its unit, a note, a scale if there is one, and other colours."""
-        self.title, self.steps, self.keys = title, steps, tuple(keys)
-        self.note, self.is_old = note, is_old
+        self.steps, self._meanings = steps, tuple(key.meaning for key in keys)
+        self._title.setText(title)
+        self._note.setText(note)
+        self._note.setVisible(bool(note))
+        self._bar.show_steps(steps, is_old)
+        while self._keys.rowCount():
+            self._keys.removeRow(0)
+        for key in keys:
+            meaning = label(key.meaning)
+            meaning.setWordWrap(True)
+            self._keys.addRow(_swatch(key, is_old), meaning)
         self.setVisible(bool(title))
-        self.resize(self.sizeHint())
+        self.resize(_WIDTH_PX, self.heightForWidth(_WIDTH_PX))
+
+
+class ColourBar(QWidget):
+    """The colours of a scale and its ticks, the largest value at the top."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._steps: Steps | None = None
+        self._is_old = False
+
+    def show_steps(self, steps: Steps | None, is_old: bool) -> None:
+        """Show a scale, grey where it is of an older state; nothing for None."""
+        self._steps, self._is_old = steps, is_old
+        lines = 0.0 if steps is None else 1.25 * len(steps.ticks) + 1.2
+        self.setFixedHeight(round(lines * self.fontMetrics().height()))
+        self.setVisible(steps is not None)
         self.update()
 
-    def sizeHint(self) -> QSize:
-        """As high as what is written."""
-        line = self.fontMetrics().height()
-        title = self._note_box().bottom() - _MARGIN
-        bar = 0.0 if self.steps is None else self._bar_height() + 1.2 * line
-        keys = sum(self._key_height(key) for key in self.keys)
-        return QSize(_WIDTH, round(2 * _MARGIN + title + bar + keys + 8))
-
     def paintEvent(self, event: QPaintEvent) -> None:
-        """Draw the legend."""
-        painter = QPainter(self)
+        """Draw the colours, and beside them their limits."""
+        if self._steps is None:
+            return
+        painter, line = QPainter(self), self.fontMetrics().height()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        ground = QColor(theme.current().base)
-        ground.setAlpha(225)
-        painter.setPen(QPen(QColor(theme.current().border)))
-        painter.setBrush(ground)
-        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 4, 4)
-        painter.setPen(QColor(theme.current().ink))
-        box = self._title_box()
-        painter.setFont(self._bold())
-        painter.drawText(box, Qt.TextFlag.TextWordWrap, self.title)
-        painter.setFont(self.font())
-        box = self._note_box()
-        painter.setPen(QColor(theme.current().muted))
-        painter.drawText(box, Qt.TextFlag.TextWordWrap, self.note)
-        top = box.bottom() + 8
-        if self.steps is not None:
-            top = self._draw_bar(painter, self.steps, top + 0.5 * self.fontMetrics().height())
-        for key in self.keys:
-            top = self._draw_key(painter, key, top)
-
-    def _draw_bar(self, painter: QPainter, steps: Steps, top: float) -> float:
-        """From the largest value at the top downward; returns where it ends."""
-        height = self._bar_height()
-        colours, count = steps.colormap, steps.colormap.N
+        colours, count = self._steps.colormap, self._steps.colormap.N
+        height = self.height() - 1.2 * line
 
         def at(number: float) -> float:
-            return top + height * (1.0 - number / count)
+            return 0.5 * line + height * (1.0 - number / count)
 
+        painter.setPen(Qt.PenStyle.NoPen)
         for number in range(count):
-            red, green, blue, _ = colours(number)
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(self._tint(QColor.fromRgbF(red, green, blue)))
-            painter.drawRect(QRectF(_MARGIN, at(number + 1), _BAR, height / count + 0.5))
+            painter.setBrush(_tinted(QColor.fromRgbF(*colours(number)), self._is_old))
+            painter.drawRect(QRectF(0, at(number + 1), _BAR_PX, height / count + 0.5))
         painter.setPen(QColor(theme.current().ink))
-        ticks = set(steps.ticks.tolist())
-        for number, edge in enumerate(steps.edges):
-            if edge in ticks:
+        for number, edge in enumerate(self._steps.edges):
+            if edge in self._steps.ticks:
                 y = at(number)
-                painter.drawLine(QPointF(_MARGIN + _BAR, y), QPointF(_MARGIN + _BAR + 4, y))
-                line = self.fontMetrics().height()
-                place = QRectF(_MARGIN + _BAR + 8, y - 0.5 * line, _WIDTH, line)
+                painter.drawLine(QPointF(_BAR_PX, y), QPointF(_BAR_PX + 4, y))
+                place = QRectF(_BAR_PX + 8, y - 0.5 * line, _WIDTH_PX, line)
                 painter.drawText(place, Qt.AlignmentFlag.AlignVCenter, fmt.trimmed(float(edge), 6))
-        return top + height + 0.7 * self.fontMetrics().height()
 
-    def _draw_key(self, painter: QPainter, key: Key, top: float) -> float:
-        swatch = QRectF(_MARGIN, top + 3, _BAR, 11)
-        painter.fillRect(swatch, self._tint(QColor(key.colour)))
-        if key.stripes:
-            painter.setBrush(Qt.BrushStyle.BDiagPattern)
-            painter.fillRect(swatch, self._tint(QColor(key.colour)))
-            stripes = painter.brush()
-            stripes.setColor(QColor(key.stripes))
-            painter.fillRect(swatch, stripes)
-        painter.setPen(QColor(theme.current().ink))
-        height = self._key_height(key)
-        painter.drawText(
-            QRectF(_MARGIN + _BAR + 8, top, _WIDTH - 2 * _MARGIN - _BAR - 8, height),
-            Qt.TextFlag.TextWordWrap,
-            key.meaning,
-        )
-        return top + height
 
-    def _tint(self, colour: QColor) -> QColor:
-        """Return a colour of the map; grey where that is of an older state."""
-        grey = 0.2126 * colour.redF() + 0.7152 * colour.greenF() + 0.0722 * colour.blueF()
-        return QColor.fromRgbF(grey, grey, grey) if self.is_old else colour
+def _swatch(key: Key, is_old: bool) -> QLabel:
+    """Return the colour of a key, hatched where it has stripes."""
+    picture = QPixmap(_BAR_PX, 11)
+    picture.fill(_tinted(QColor(key.colour), is_old))
+    if key.stripes:
+        stripes = QBrush(QColor(key.stripes), Qt.BrushStyle.BDiagPattern)
+        painter = QPainter(picture)
+        painter.fillRect(picture.rect(), stripes)
+        painter.end()
+    swatch = QLabel()
+    swatch.setPixmap(picture)
+    return swatch
 
-    def _bar_height(self) -> float:
-        lines = 0 if self.steps is None else len(self.steps.ticks)
-        return float(lines * 1.25 * self.fontMetrics().height())
 
-    def _key_height(self, key: Key) -> float:
-        room = QRectF(0, 0, _WIDTH - 2 * _MARGIN - _BAR - 8, 1000).toRect()
-        return (
-            self.fontMetrics().boundingRect(room, Qt.TextFlag.TextWordWrap, key.meaning).height()
-            + 4
-        )
-
-    def _title_box(self) -> QRectF:
-        room = QRectF(_MARGIN, _MARGIN, _WIDTH - 2 * _MARGIN, 1000)
-        return QFontMetricsF(self._bold()).boundingRect(room, Qt.TextFlag.TextWordWrap, self.title)
-
-    def _note_box(self) -> QRectF:
-        title = self._title_box()
-        room = QRectF(_MARGIN, title.bottom() + 2, _WIDTH - 2 * _MARGIN, 1000)
-        flags = Qt.TextFlag.TextWordWrap
-        box = QFontMetricsF(self.font()).boundingRect(room, flags, self.note)
-        return box if self.note else QRectF(title.bottomLeft(), title.bottomLeft())
-
-    def _bold(self) -> QFont:
-        font = QFont(self.font())
-        font.setBold(True)
-        return font
+def _tinted(colour: QColor, is_old: bool) -> QColor:
+    """Return a colour of the map; grey where that is of an older state."""
+    grey = 0.2126 * colour.redF() + 0.7152 * colour.greenF() + 0.0722 * colour.blueF()
+    return QColor.fromRgbF(grey, grey, grey) if is_old else colour

@@ -110,15 +110,8 @@ class PanelMeasured(QWidget):
         if diagnosis is None:
             self.summary.setText("No search has been made.")
             return
-        lines = [f"<b>{diagnosis.title}</b> {diagnosis.text}"]
-        lines += [f"{effect.key}: {effect.values}" for effect in diagnosis.effects]
-        for error in diagnosis.errors:
-            texts = (
-                f"{fmt.number(v, 3)} {error.unit}" for v in (error.before, error.after, error.noise)
-            )
-            before, after, noise = texts
-            lines.append(f"error of {error.reading}: {before} before, {after} after, noise {noise}")
-        self.summary.setText("<br>".join(lines))
+        answer = f"<b>{diagnosis.title}</b> {diagnosis.text}"
+        self.summary.setText("<br>".join((answer, *diagnosis.effects, *diagnosis.errors)))
 
     def _take_over(self) -> None:
         if self._diagnosis is not None:

@@ -130,6 +130,8 @@ QHeaderView::section {{ background: {theme.window}; color: {theme.muted}; border
     border-bottom: 1px solid {theme.border}; padding: 3px 4px; }}
 QTableView {{ border: none; gridline-color: {theme.border}; }}
 QScrollArea {{ border: none; }}
+QFrame#legend {{ background: #e1{theme.base[1:]}; border: 1px solid {theme.border};
+    border-radius: 4px; }}
 QStatusBar {{ border-top: 1px solid {theme.border}; }}
 QToolBar {{ border: none; border-bottom: 1px solid {theme.border}; spacing: 6px; padding: 3px; }}
 QLabel[role="muted"], QCheckBox[role="muted"] {{ color: {theme.muted}; }}

@@ -310,7 +310,7 @@ class WorkPage(QWidget):
             azimuth, elevation = (float(angle) for angle in np.radians(sides[view]))
         # clear of the legend at the right
         width, height = max(self.scene.width(), 1), max(self.scene.height(), 1)
-        right = 0.97 - self.scene.colour_legend.sizeHint().width() / width
+        right = 0.97 - self.scene.colour_legend.width() / width
         frame = (0.05, right, 0.08, 0.92)
         corners = stage.everything_m()
         self.scene.view = fitting(corners, azimuth, elevation, frame, (width, height))
