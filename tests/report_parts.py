@@ -15,8 +15,8 @@ from markupsafe import Markup
 
 from designer.analysis.provenance import Provenance
 from designer.diagnosis.result import Diagnosis
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
-from designer.report.design.source import Source
 from designer.report.diagnosis.report import diagnosis_report
 from designer.report.document import Report, Section
 from designer.report.render import rendered
@@ -352,7 +352,7 @@ class FirstPage:
     confidence: tuple[Statement, ...]
 
 
-def first_page(part: Source | Report) -> FirstPage:
+def first_page(part: Drawings | Report) -> FirstPage:
     """The first page, as its template shows it."""
     root = tree(part.section("answer") if isinstance(part, Report) else section(part, "answer"))
     (verdict,) = [one for node in root.all("p", "verdict") for one in _statements(node)]

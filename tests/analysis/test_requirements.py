@@ -18,8 +18,8 @@ from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.model.requirement import Answer, Requirement, State, answer_of
 from designer.model.robot import Poses
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
-from designer.report.design.source import source_of
 from designer.report.render import rendered
 from designer.statics.inverse import solve_sagging
 
@@ -154,7 +154,7 @@ def test_a_pose_that_is_not_found_is_open_and_not_impossible(solve: Solve) -> No
     assert outcome.outcome == "open"
     assert "none were found" in (analysis.selection.reason or "")
     assert analysis.to_dict()["answer"]["verdict"] == "open"
-    page = rendered(section(source_of(analysis, draws=False), "answer")).body
+    page = rendered(section(Drawings(analysis), "answer")).body
     assert "<strong>Open.</strong> It was not found out" in page
     assert "cannot be held" not in page
 

@@ -27,8 +27,8 @@ from designer.model.machine import Machine
 from designer.model.measurements import Measurements
 from designer.model.robot import Poses
 from designer.progress import Silent
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
-from designer.report.design.source import Source
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
 from designer.study import Study, as_built_by, rope_effects
@@ -167,7 +167,7 @@ def test_candidates_are_proved_with_the_mass_that_they_have_there(iced: Analysis
 
 
 def test_the_report_says_what_stands_for_the_family(iced: Analysis) -> None:
-    items = [item.text() for item in tree(section(Source(iced), "assumptions")).all("li")]
+    items = [item.text() for item in tree(section(Drawings(iced), "assumptions")).all("li")]
     (words,) = (text for text in items if "that the study declares" in text)
     assert "do not act alike on all sections" in words
     assert "20\u00a0°C" in words

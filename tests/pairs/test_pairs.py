@@ -19,8 +19,8 @@ from pairs.table import (
     wrong_with,
 )
 
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
-from designer.report.design.source import source_of
 from designer.report.render import rendered
 
 TABLE = read_table()
@@ -62,7 +62,7 @@ def test_table_is_what_studies_are_read_as(tmp_path: Path) -> None:
 
 def test_effect_on_readings_is_told_as_not_covered(tmp_path: Path) -> None:
     analysis = analysed(study_of("crane", BY_ID["reading_effect"], BY_ID["pulleys"]), tmp_path)
-    page = rendered(section(source_of(analysis, draws=False), "answer")).body
+    page = rendered(section(Drawings(analysis), "answer")).body
     declared, idle = (
         page.partition(title)[2].partition("</p>")[0]
         for title in ("Declared effects.", "Effects not covered.")

@@ -18,8 +18,8 @@ from designer.io.config import read_study
 from designer.model.point_list import PointList
 from designer.model.robot import Poses
 from designer.model.space import Orientations
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
-from designer.report.design.source import Source
 from designer.report.figures.scenes import edges_m
 from designer.report.phrases import described_orientations, described_region
 from designer.resources import example_file
@@ -93,9 +93,9 @@ def test_all_pictures_are_drawn(flat: Analysis, facade: Study, tmp_path: Path) -
     points = PointList(frozen_array([[-5.0, 0, 10], [0, 0, 12], [5, 0, 10]]))
     listed = analysed(replace(facade, workspace=replace(facade.workspace, region=points)), tmp_path)
     for analysis in (flat, listed):
-        source = Source(analysis, draws=True)
-        assert source.drawings.robot is not None
-        shown = pictures(section(source, "workspace"))
+        drawings = Drawings(analysis, draws=True)
+        assert drawings.robot is not None
+        shown = pictures(section(drawings, "workspace"))
         assert any("z [m]" in picture.svg for picture in shown)
         assert not any("above" in picture.caption for picture in shown)
 

@@ -11,15 +11,15 @@ from report_parts import caption, pictures
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.maps import Served
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
-from designer.report.design.source import Source
 
 pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
 def crane(yard: Analysis) -> list[str]:
-    charts = Source(yard, draws=True, missing="no scenes")
+    charts = Drawings(yard, draws=True, missing="no scenes")
     return [picture.caption for picture in pictures(section(charts, "family"))]
 
 
@@ -31,7 +31,7 @@ def test_where_sag_hardly_matters_one_figure_less_says_so(crane: list[str]) -> N
 
 
 def test_figures_that_would_be_flat_are_left_out(yard: Analysis) -> None:
-    charts = Source(yard, draws=True, missing="no scenes")
+    charts = Drawings(yard, draws=True, missing="no scenes")
     shown = [picture.caption for picture in pictures(section(charts, "family"))]
     assert len(pictures(section(charts, "workspace"))) == 1
     assert len(shown) == 3 and "All samples by verdict." not in shown  # every sample is held

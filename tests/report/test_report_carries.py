@@ -15,8 +15,8 @@ from designer.analysis.carries import Carries
 from designer.analysis.result_json import result_dict
 from designer.analysis.sensitivities import sensitivities, with_payload
 from designer.documents.plain import json_text
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import section as section_of
-from designer.report.design.source import source_of
 from designer.selection.verify import verify
 
 pytestmark = pytest.mark.slow
@@ -148,7 +148,7 @@ def test_result_and_report_have_it(windy: Analysis) -> None:
     assert "exit_point_3_z" in inputs
     assert result["reserve"]["payload_factor"] > 1.0
     assert result["reserve"]["region_margin_m"] > 0.0
-    section = section_of(source_of(windy, draws=False), "carries")
+    section = section_of(Drawings(windy), "carries")
     assert section is not None
     rows = {row[0]: row for row in cells(section, "What changes")}
     assert rows["Breaking load"][3].startswith("−")

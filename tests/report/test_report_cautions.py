@@ -15,8 +15,8 @@ from test_report_qualities import PRISM, SELECTION, SIX
 
 from designer.analysis.analyse import Analysis
 from designer.grades.grade import Limits
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import design_report, section
-from designer.report.design.source import source_of
 from designer.report.figures.charts_selection import pareto_chart
 from designer.report.material_class import class_of
 from designer.report.render import render_html
@@ -27,7 +27,7 @@ Solve = Callable[[str], Analysis]
 
 
 def page_of(analysis: Analysis) -> FirstPage:
-    return first_page(source_of(analysis, draws=False))
+    return first_page(Drawings(analysis))
 
 
 @pytest.fixture(scope="module")
@@ -153,9 +153,9 @@ def test_fields_left_out_stand_in_the_appendix(fibre: Analysis) -> None:
 def test_one_size_alone_is_said_in_words(fibre: Analysis, analyses: dict[str, Analysis]) -> None:
     assert fibre.selection is not None
     assert len(fibre.selection.front) == 1
-    shown = said(section(source_of(fibre, draws=False), "selection"))
+    shown = said(section(Drawings(fibre), "selection"))
     assert "3/4 in beats every other size" in shown
-    none = said(section(source_of(analyses["too_thin"], draws=False), "selection"))
+    none = said(section(Drawings(analyses["too_thin"]), "selection"))
     assert "beats every other size" not in none and "nothing to weigh it against" not in none
 
 

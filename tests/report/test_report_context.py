@@ -15,9 +15,9 @@ from report_parts import cells, facts, first_page, said, table, tables, texts
 from designer.analysis.analyse import Analysis
 from designer.report import format as fmt
 from designer.report.design import pose
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import design_report
 from designer.report.design.report import section as section_of
-from designer.report.design.source import Source, source_of
 from designer.report.document import MOST_ROWS, Report, Section
 from designer.report.pictures import Drawing
 from designer.report.render import render_html
@@ -85,7 +85,7 @@ def test_no_raw_number_reaches_the_page(reports: dict[str, Report]) -> None:
     assert words.isdisjoint({"nan", "inf", "None", "array", "np.float64"})
 
 
-@pytest.mark.parametrize("kind", [Report, Source, Drawing])
+@pytest.mark.parametrize("kind", [Report, Drawing])
 def test_every_field_is_documented(kind: type) -> None:
     names = {field.name for field in dataclasses.fields(kind)}
     assert {name for name in names if name not in (kind.__doc__ or "")} == set()
@@ -133,7 +133,7 @@ def test_pose_section_shows_the_papers_loop(reports: dict[str, Report]) -> None:
 
 def test_a_loop_that_diverges_is_said_to(solve: Callable[[str], Analysis]) -> None:
     text = FAST.format(**{**DEFAULTS, "pose": "[250, 200, -1]"})
-    section = section_of(source_of(solve(text[: text.index("workspace:")]), draws=False), "pose")
+    section = section_of(Drawings(solve(text[: text.index("workspace:")])), "pose")
     assert "It diverges" in table(section, "Iterations; 0 is").caption
     turns = cells(section, "Iterations; 0 is")
     assert max(len(cell) for row in turns for cell in row) <= 15
@@ -254,7 +254,7 @@ def test_first_page_says_how_much_is_left_out(reports: dict[str, Report]) -> Non
 
 def selection_page(analyses: dict[str, Analysis], selection: SelectionResult) -> Section | None:
     analysis = altered(analyses["positive"], selection=selection)
-    return section_of(source_of(analysis, draws=False), "selection")
+    return section_of(Drawings(analysis), "selection")
 
 
 def test_long_rankings_show_their_best_rows_and_say_where_the_rest_is(

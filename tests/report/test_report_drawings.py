@@ -11,8 +11,8 @@ import pytest
 from report_parts import pictures, table
 
 from designer.analysis.analyse import Analysis
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import design_report, report_from, section
-from designer.report.design.source import Source
 from designer.report.document import Report
 from designer.report.render import render_html, render_pdf
 
@@ -57,7 +57,7 @@ def test_pose_alone_has_no_workspace_pictures(pose_only: Analysis) -> None:
 
 def test_charts_stay_vector_graphics_in_the_pdf(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
-    charts = report_from(Source(analysis, draws=True, missing="no scenes"))
+    charts = report_from(Drawings(analysis, draws=True, missing="no scenes"))
     assert len(pictures(charts.section("workspace"))) == 1
     assert len(pictures(charts.section("family"))) == 4
     reader = pypdf.PdfReader(io.BytesIO(render_pdf(render_html(charts, paged=True))))
@@ -74,7 +74,7 @@ def test_grades_that_all_cannot_hold_have_no_chart(analyses: dict[str, Analysis]
     assert selection is not None
     needs = [o.continuous_diameter_m for o in selection.outcomes]
     assert all(math.isnan(need) for need in needs)
-    source = Source(analyses["no_finite_cable"], draws=True, missing="no scenes")
+    source = Drawings(analyses["no_finite_cable"], draws=True, missing="no scenes")
     shown = section(source, "selection")
     assert not any("A row for each" in p.alternative for p in pictures(shown))
     assert table(shown, "Grades of which no size holds").groups

@@ -121,16 +121,16 @@ def test_hanging_share_is_that_of_the_chosen_rope(
 
 
 def test_findings_and_assumptions_are_of_the_machine_as_built(solve, yard) -> None:
+    from designer.report.design.drawings import Drawings
     from designer.report.design.report import section
-    from designer.report.design.source import Source
     from designer.resources import example_file
 
     text = example_file("yard").read_text(encoding="utf-8")
     built = solve(text + "\neffects: {pulley_radius: {radius_m: 0.3}, linear_mass: {scale: 2}}\n")
-    assumptions = said(section(Source(built), "assumptions"))
+    assumptions = said(section(Drawings(built), "assumptions"))
     assert "300 mm radius" in assumptions
     assert "the study declares: pulley_radius, linear_mass. They act" in assumptions
-    assert "without pulleys" in said(section(Source(yard), "assumptions"))
+    assert "without pulleys" in said(section(Drawings(yard), "assumptions"))
     assert built.selection is not None
     outcome = built.selection.outcomes[0]
     # The mass was found of the study's own cable: a rope of the catalogue keeps its data sheet.

@@ -12,8 +12,8 @@ from report_parts import cells, facts, first_page, statements, table, tables
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
 from designer.cli.tables import summary_rows
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import section as section_of
-from designer.report.design.source import Source
 from designer.report.figures.groups_plan import groups_plan
 from designer.selection.assignment import NOT_ASSIGNED
 
@@ -63,7 +63,7 @@ def test_result_has_the_groups_beside_the_single_choice(found: Analysis) -> None
 
 
 def test_section_says_the_same(found: Analysis) -> None:
-    section = section_of(Source(found), "groups")
+    section = section_of(Drawings(found), "groups")
     assert statements(section)["Products were found for the groups"].tone == "good"
     rows = cells(section, "What each group gets")
     assert [row[1] for row in rows] == ["1, 2", "3"]
@@ -89,14 +89,14 @@ def test_nothing_found_is_said(none: Analysis) -> None:
     assert part["groups"] == []
     assert part["group_choice"]["proof"] == "infeasible"
     assert part["group_choice"]["total_mass_kg"] is None
-    section = section_of(Source(none), "groups")
+    section = section_of(Drawings(none), "groups")
     assert statements(section)["No products were found for the groups"].tone == "bad"
     assert not any(one.caption.startswith("What each group") for one in tables(section))
 
 
 def test_study_without_groups_has_none(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
-    assert section_of(Source(analysis), "groups") is None
+    assert section_of(Drawings(analysis), "groups") is None
     selection = result_dict(analysis)["selection"]
     assert (selection["groups"], selection["group_choice"]) == ([], None)
 
@@ -112,7 +112,7 @@ def test_groups_are_the_answer(found: Analysis) -> None:
     groups = replace(found.groups, single=NOT_ASSIGNED)
     without = altered(found, selection=alone, groups=groups)
     assert without.is_positive
-    page = first_page(Source(without))
+    page = first_page(Drawings(without))
     assert page.verdict.title == "Yes"
     assert page.reasons == page.actions == ()
     assert page.card is not None and page.card.heading == "Ropes for groups of cables"
@@ -125,6 +125,6 @@ def test_where_no_groups_are_found_the_answer_is_no(none: Analysis) -> None:
     assert not none.is_positive
     assert result_dict(none)["answer"]["verdict"] in ("no", "open")
     assert result_dict(none)["answer"]["products"] == []
-    page = first_page(Source(none))
+    page = first_page(Drawings(none))
     assert page.verdict.title == "No"
     assert "No products were found for the groups" in [reason.title for reason in page.reasons]

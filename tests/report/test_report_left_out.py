@@ -11,8 +11,8 @@ from report_parts import page, said
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
-from designer.report.design.source import Source
 
 pytestmark = pytest.mark.slow
 
@@ -28,7 +28,7 @@ def test_both_kinds_of_problem_are_told_once(analyses: dict[str, Analysis]) -> N
         study=dataclasses.replace(analysis.study, known_effects=known),
         catalogue=dataclasses.replace(analysis.catalogue, problems=(EVIL,)),
     )
-    shown = section(Source(spoilt), "left-out")
+    shown = section(Drawings(spoilt), "left-out")
     assert f"These could not be loaded: {EVIL} {LOST}" in said(shown)
     assert "<script" not in page(shown)
     assert "&lt;script&gt;alert(1)" in page(shown)
@@ -40,7 +40,7 @@ def test_few_grades_are_named_and_many_are_counted(analyses: dict[str, Analysis]
     analysis = analyses["positive"]
     names = [g.id for g in analysis.catalogue.grades if not g.why_only_by_name]
     few, many = (
-        said(section(Source(_allowing(analysis, tuple(some))), "left-out"))
+        said(section(Drawings(_allowing(analysis, tuple(some))), "left-out"))
         for some in (names[3:], names[:3])
     )
     assert all(name in few for name in names[:3])

@@ -14,8 +14,8 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
 from designer.model.requirement import Requirement
 from designer.model.robot import Poses
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import section as section_of
-from designer.report.design.source import source_of
 from designer.selection.criteria import criteria_of
 from designer.selection.requirements import drum_of, evaluate, loads_of
 from designer.statics.inverse import solve_sagging
@@ -105,7 +105,7 @@ def test_a_cable_that_swings_within_the_band_does_not_hold(found: Analysis) -> N
 
 
 def test_the_report_tells_what_is_checked_and_what_not(found: Analysis) -> None:
-    section = section_of(source_of(found, draws=False), "checks")
+    section = section_of(Drawings(found), "checks")
     assert section is not None
     rows = table(section, "All that the study asks for").groups[0].rows
     assert {"Stiffness", "Excitation", "Drum"} <= {row.cells[0] for row in rows}
@@ -123,6 +123,6 @@ def test_a_study_that_asks_for_every_check_lacks_none(solve: Callable[[str], Ana
     analysis = solve(SIX.format(region=region, clearance="0.1 m", selection=selection))
     done = {row["id"] for row in result_dict(analysis)["checks"]}
     assert {"sheave_ratio", "clearance", "stiffness", "excitation", "drum_capacity"} <= done
-    section = section_of(source_of(analysis, draws=False), "checks")
+    section = section_of(Drawings(analysis), "checks")
     assert section is not None
     assert "Not evaluated: height over a floor (none is given)." in said(section)

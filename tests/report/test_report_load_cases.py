@@ -17,9 +17,9 @@ from designer.analysis.result_json import result_dict
 from designer.cli.tables import summary_rows
 from designer.documents.plain import json_text
 from designer.model.requirement import State
+from designer.report.design.drawings import Drawings
 from designer.report.design.first_page import Unmet
 from designer.report.design.report import section as section_of
-from designer.report.design.source import Source, source_of
 
 pytestmark = pytest.mark.slow
 
@@ -56,8 +56,8 @@ def bare(solve: Callable[[str], Analysis]) -> Analysis:
 
 
 @pytest.fixture(scope="module")
-def source(found: Analysis) -> Source:
-    return source_of(found, draws=False)
+def drawings(found: Analysis) -> Drawings:
+    return Drawings(found)
 
 
 def test_result_has_each_case(found: Analysis) -> None:
@@ -97,8 +97,8 @@ def test_forces_of_the_governing_pose_add_up(found: Analysis) -> None:
         assert cable["sag_m"] == pytest.approx(sag, rel=0.02)
 
 
-def test_the_tables(source: Source) -> None:
-    section = section_of(source, "load-cases")
+def test_the_tables(drawings: Drawings) -> None:
+    section = section_of(drawings, "load-cases")
     rows = cells(section, "Unirope-7x19-galvanised")
     assert [row[0] for row in rows] == ["static", "<b>hoisting</b>", "storm", "lost"]
     assert [row[-1] for row in rows] == ["holds", "holds, governs", "holds", "holds"]
@@ -107,8 +107,8 @@ def test_the_tables(source: Source) -> None:
     assert table(section, "The load cases").groups[0].rows[1].cells[1] == "Dynamic factor 1.5"
 
 
-def test_the_checks(source: Source) -> None:
-    section = section_of(source, "checks")
+def test_the_checks(drawings: Drawings) -> None:
+    section = section_of(drawings, "checks")
     rows = {(row[0], row[-2].split(",")[0]): row[-1] for row in cells(section, "All that")}
     for case in ("static", "<b>hoisting</b>", "storm", "lost"):
         assert rows["Equilibrium", case] == rows["Breaking load", case] == "holds"
@@ -119,13 +119,13 @@ def test_the_checks(source: Source) -> None:
     assert all(abs(float(cell.split("\u00a0")[0])) == 0.0 for cell in total[1:])
 
 
-def test_what_fails_is_on_page_one(found: Analysis, source: Source) -> None:
+def test_what_fails_is_on_page_one(found: Analysis) -> None:
     assert not found.unmet
     bent = [
         replace(each, state=State.FAILS) if each.id == "sheave_ratio" else each
         for each in found.requirements
     ]
-    page = first_page(replace(source, analysis=altered(found, requirements=tuple(bent))))
+    page = first_page(Drawings(altered(found, requirements=tuple(bent))))
     assert {one.title: one for one in page.reasons}["Sheave does not hold"].tone == "bad"
 
 
@@ -135,12 +135,12 @@ def test_the_terminal_has_a_line_a_case(found: Analysis) -> None:
     assert "in the load case '<b>hoisting</b>'" in rows["  utilisation"]
 
 
-def test_page_one_says_what_is_in_the_loads(source: Source, bare: Analysis) -> None:
+def test_page_one_says_what_is_in_the_loads(drawings: Drawings, bare: Analysis) -> None:
     assert (
         "No acceleration or change of temperature is in any"
-        in statements(section_of(source, "answer"))["Loads"].text
+        in statements(section_of(drawings, "answer"))["Loads"].text
     )
-    alone = source_of(bare, draws=False)
+    alone = Drawings(bare)
     text = statements(section_of(alone, "answer"))["Loads"].text
     assert text == (
         "One static load case, at rest: no dynamic factor, acceleration, wind, ice, loss of a "
@@ -172,12 +172,12 @@ def test_without_a_selection_the_diameter_of_each_case_is_told(
     assert static == pytest.approx(found.workspace.sagging.diameter_m, rel=1e-4)
     assert storm > cold > static
     assert [case["temperature_change_K"] for case in cases] == [None, None, -40.0]
-    source = source_of(found, draws=False)
-    page = first_page(source)
+    drawings = Drawings(found)
+    page = first_page(drawings)
     assert "'storm' governs" in page.verdict.text
     assert page.card is not None
     assert page.card.size == f"{1e3 * storm:.2f}\u00a0mm"
-    section = section_of(source, "load-cases")
+    section = section_of(drawings, "load-cases")
     rows = cells(section, "The thinnest diameter")
     assert [row[0] for row in rows] == ["static", "storm", "cold"]
     assert "Winches that regulate" in said(section)

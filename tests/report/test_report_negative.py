@@ -7,14 +7,14 @@ from report_parts import FirstPage, first_page, table
 
 from designer.analysis.analyse import Analysis
 from designer.model.verdict import Verdict
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
-from designer.report.design.source import source_of
 
 pytestmark = pytest.mark.slow
 
 
 def page_of(analysis: Analysis) -> FirstPage:
-    return first_page(source_of(analysis, draws=False))
+    return first_page(Drawings(analysis))
 
 
 def said(page: FirstPage) -> str:
@@ -81,7 +81,7 @@ def test_grade_ends_too_thin(analyses: dict[str, Analysis]) -> None:
     fitting = [outcome.best for outcome in analysis.selection.alternatives]
     lightest = min((c for c in fitting if c is not None), key=lambda c: c.total_mass_kg)
     assert f"the lightest first: {lightest.grade.id} ({lightest.size.id})" in text
-    shown = section(source_of(analysis, draws=False), "selection")
+    shown = section(Drawings(analysis), "selection")
     assert table(shown, "Grades that the study does not allow").groups[0].rows
 
 

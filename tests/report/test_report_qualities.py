@@ -15,8 +15,8 @@ from report_parts import facts, pictures, said, statements, tables
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
 from designer.analysis.section import SectionMap
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import design_report, section
-from designer.report.design.source import Source, source_of
 from designer.report.figures.sections import section_map
 from designer.report.render import render_html
 
@@ -97,7 +97,7 @@ def test_what_was_not_asked_for_is_null(yard: Analysis, pose_only: Analysis) -> 
 def test_no_cable_has_no_qualities(analyses: dict[str, Analysis]) -> None:
     assert analyses["no_finite_cable"].qualities is None
     assert result_dict(analyses["no_finite_cable"])["workspace"]["stiffness"] is None
-    assert section(source_of(analyses["no_finite_cable"], draws=False), "stiffness") is None
+    assert section(Drawings(analyses["no_finite_cable"]), "stiffness") is None
 
 
 def test_sections_say_what_was_found(kept: Analysis, not_kept: Analysis) -> None:
@@ -118,14 +118,14 @@ def test_a_clearance_broken_between_samples_only(not_kept: Analysis) -> None:
     assert found is not None and found.interference is not None
     none_of_the_samples = replace(found.interference, violating=0)
     changed = altered(not_kept, qualities=replace(found, interference=none_of_the_samples))
-    assert "only between the samples" in said(section(Source(changed), "clearance"))
+    assert "only between the samples" in said(section(Drawings(changed), "clearance"))
 
 
 def test_unstable_poses_are_told(kept: Analysis) -> None:
     found = kept.qualities
     assert found is not None and found.stiffness is not None
     shaky = replace(found, stiffness=replace(found.stiffness, unstable=3, softest_m_per_N=np.inf))
-    shown = section(Source(altered(kept, qualities=shaky)), "stiffness")
+    shown = section(Drawings(altered(kept, qualities=shaky)), "stiffness")
     verdict = statements(shown)["Some poses are not stable"]
     assert verdict.tone == "bad"
     assert "not stay where it is put in 5.00\u00a0% of the samples" in verdict.text
@@ -145,7 +145,7 @@ def test_a_list_of_points_has_no_map(solve: Solve) -> None:
     points = "{points: [[0, 0, 4], [2, 1, 5]]}"
     analysis = solve(SIX.format(region=points, clearance="0.1 m", selection=""))
     for name in ("stiffness", "clearance"):
-        shown = section(Source(analysis, draws=True), name)
+        shown = section(Drawings(analysis, draws=True), name)
         assert shown is not None
         assert pictures(shown) == []
 
@@ -157,7 +157,7 @@ cable: {density: 5290 kg/m^3, youngs_modulus: 62.7 GPa, allowable_stress: 198 MP
 workspace: {region: {points: [[15, 9, 4]]}, clearance: 0.1 m}
 """
     analysis = solve(text)
-    shown = section(Source(analysis, draws=True), "clearance")
+    shown = section(Drawings(analysis, draws=True), "clearance")
     assert "There is nothing to compare" in statements(shown)
     assert tables(shown) == []
     assert result_dict(analysis)["workspace"]["interference"]["min_distance_m"] is None

@@ -18,8 +18,8 @@ from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.model.space import Orientations, Space
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
-from designer.report.design.source import Source, source_of
 from designer.report.phrases import orientation_words
 from designer.resources import example_file
 from designer.study import Selection, Study
@@ -72,7 +72,7 @@ def test_losses_of_strength_are_said_also_where_none_is_assumed(
 
     def said(selection: Selection) -> tuple[str, str]:
         changed = altered(analysis, study=replace(analysis.study, selection=selection))
-        statement = statements(section(Source(changed), "answer"))["Losses of strength"]
+        statement = statements(section(Drawings(changed), "answer"))["Losses of strength"]
         return statement.text.replace("\u00a0", " "), statement.tone
 
     nothing, tone = said(Selection())
@@ -85,7 +85,7 @@ def test_losses_of_strength_are_said_also_where_none_is_assumed(
     both, tone = said(Selection(termination_efficiency=0.95, sheave_diameter_m=sheave_m))
     assert f"90.0 % for {chosen.size.id} (D/d 25)" in both
     assert tone == ""
-    page = first_page(Source(analysis))
+    page = first_page(Drawings(analysis))
     assert "Losses of strength" in [statement.title for statement in page.confidence]
     assert page.card is not None
     assert "breaking load, no loss, over 2" in [fact.note for fact in page.card.facts]
@@ -117,14 +117,14 @@ def test_a_pose_outside_the_region_is_flagged_everywhere(analyses: dict[str, Ana
     moved = replace(inside, study=replace(inside.study, pose=Poses.at([250.0, 200.0, -30.0])))
     assert moved.study.pose_outside == "lies outside the region"
     assert result_dict(moved)["pose"]["in_workspace"] is False
-    source = source_of(moved, draws=False)
+    source = Drawings(moved)
     flagged = first_page(source).confidence[0]
     assert flagged.title == "The configured pose is not in the workspace"
     assert "It lies outside the region. There, " in flagged.text
     assert flagged.tone in ("doubt", "bad")
     assert statements(section(source, "pose"))[flagged.title] == flagged
     assert ("", "[bold red]lies outside the region[/]") in [*summary_rows(moved)]
-    assert flagged.title not in statements(section(Source(inside), "pose"))
+    assert flagged.title not in statements(section(Drawings(inside), "pose"))
 
 
 def test_forces_of_one_table_row_have_one_unit(analyses: dict[str, Analysis]) -> None:
@@ -142,9 +142,7 @@ def test_forces_of_one_table_row_have_one_unit(analyses: dict[str, Analysis]) ->
         for o in selection.outcomes
     )
     for shown in (selection, replace(selection, outcomes=outcomes, chosen=small)):
-        page = section(
-            source_of(altered(analyses["positive"], selection=shown), draws=False), "selection"
-        )
+        page = section(Drawings(altered(analyses["positive"], selection=shown)), "selection")
         heads = {c.title: c.unit for c in table(page, "Sizes that hold everywhere").columns}
         units = {heads[name] for name in ("Breaking load", "Allowable", "Largest tension")}
         assert units == ({"kN"} if shown is selection else {"N"})

@@ -49,12 +49,10 @@ def found_of(used: np.ndarray, *, is_asked: bool = True, **other: Any) -> Uncert
 def shown(found: UncertaintyAnalysis | None, *, draws: bool = True, **more: Any) -> Section | None:
     study = SimpleNamespace(uncertainty=more.get("asked"))
     assignment = SimpleNamespace(rope=more.get("chosen"))
-    analysis = SimpleNamespace(
+    analysis: Any = SimpleNamespace(
         uncertainty=found, study=study, findings=None, assignment=assignment, carries=None
     )
-    source: Any = SimpleNamespace(analysis=analysis, draws=draws)
-    source.drawings = Drawings(source)
-    return section(source, "uncertainty")
+    return section(Drawings(analysis, draws), "uncertainty")
 
 
 def said_first(found: UncertaintyAnalysis) -> Statement:

@@ -10,8 +10,8 @@ from report_parts import Grid
 from report_parts import tables as tables_of
 
 import designer
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import design_report, section
-from designer.report.design.source import source_of
 
 STUDY = """
 robot:
@@ -31,7 +31,7 @@ def analysis_of(tmp_path: Path, text: str) -> designer.Analysis:
 
 
 def tables(analysis: designer.Analysis) -> list[Grid]:
-    return tables_of(section(source_of(analysis, draws=False), "workshop"))
+    return tables_of(section(Drawings(analysis), "workshop"))
 
 
 def test_the_lengths_are_those_of_the_chosen_rope(tmp_path) -> None:

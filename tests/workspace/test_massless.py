@@ -16,8 +16,8 @@ from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.model.space import Orientations
 from designer.model.workspace import Workspace
+from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
-from designer.report.design.source import Source
 from designer.resources import example_file
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_massless
@@ -99,6 +99,6 @@ def test_terminal_and_report_say_that_there_is_none(tmp_path) -> None:
     analysis = analyse(ipanema(ACROSS), folder=tmp_path)
     said = dict(summary_rows(analysis))
     assert said["  massless"] == "none: straight cables do not hold every pose"
-    page = section(Source(analysis, draws=False, missing="pictures"), "workspace")
+    page = section(Drawings(analysis, draws=False, missing="pictures"), "workspace")
     start = "Straight weightless cables do not hold every"
     assert any(text.startswith(start) for text in paragraphs(page))

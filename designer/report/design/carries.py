@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from designer.analysis.analyse import Analysis
 from designer.analysis.carries import Carries
 from designer.analysis.sensitivities import Sensitivities
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
-
-if TYPE_CHECKING:
-    from designer.report.design.source import Source
 
 _NAMES = {
     "payload": "Payload",
@@ -35,9 +32,9 @@ Change = tuple[str, float]
 """An input, and what it changes of the utilisation."""
 
 
-def sensitivities(source: Source) -> Mapping[str, object] | None:
+def sensitivities(analysis: Analysis) -> Mapping[str, object] | None:
     """What carries the result; None where no rope is chosen."""
-    carries, groups = source.analysis.carries, source.analysis.group_slopes
+    carries, groups = analysis.carries, analysis.group_slopes
     if carries is not None:
         return _of_one_rope(carries)
     return _of_groups(groups) if groups else None

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING
 
+from designer.analysis.analyse import Analysis
 from designer.analysis.governing import GoverningPose
 from designer.model.requirement import Requirement, State
 from designer.report import format as fmt
 from designer.study import Study
 
-if TYPE_CHECKING:
-    from designer.report.design.source import Source
 
-
-def requirements(source: Source) -> Mapping[str, object]:
+def requirements(analysis: Analysis) -> Mapping[str, object]:
     """All that the study requires, and whether it holds."""
-    analysis, pose = source.analysis, source.analysis.governing
+    pose = analysis.governing
     shown = {
         "requirements": by_title(analysis.requirements),
         "not_evaluated": _not_evaluated(analysis.study, analysis.requirements),

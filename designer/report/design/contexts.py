@@ -10,43 +10,60 @@ from itertools import zip_longest
 
 import numpy as np
 
+from designer.analysis.analyse import Analysis
 from designer.arrays import FloatArray
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.report import format as fmt
-from designer.report.design.source import Source
+from designer.report.design.drawings import Drawings
 from designer.report.document import MOST_ROWS
 from designer.report.templates import Statement, plain_statement
 from designer.study import Entry, rope_effects
 
 Context = Mapping[str, object]
 
+_MOST_PROPOSALS = 12
+"""As many as a page has room for; result.json has all."""
 
-def shared(source: Source) -> Context:
+
+def shared(drawings: Drawings) -> Context:
     """Return what every template gets: the results, and the figures, each drawn when it is read."""
+    analysis = drawings.analysis
     return {
-        "analysis": source.analysis,
-        "study": source.analysis.study,
-        "assignment": source.analysis.assignment,
-        "findings": source.analysis.findings,
-        "drawings": source.drawings,
+        "analysis": analysis,
+        "study": analysis.study,
+        "assignment": analysis.assignment,
+        "findings": analysis.findings,
+        "drawings": drawings,
         "most_rows": MOST_ROWS,
         "Verdict": Verdict,
     }
 
 
-def stiffness(source: Source) -> Context | None:
+def groups(analysis: Analysis) -> Context | None:
+    """What each group of cables gets; None if the study has no groups."""
+    choice = analysis.groups
+    if choice is None:
+        return None
+    return {
+        "choice": choice,
+        "decimals_kN": fmt.decimals(p.cable.allowable_tension_N / 1e3 for p in choice.chosen.ropes),
+        "most_proposals": _MOST_PROPOSALS,
+    }
+
+
+def stiffness(analysis: Analysis) -> Context | None:
     """Displacements under a force; None without a workspace, or where no cable holds."""
-    qualities = source.analysis.qualities
+    qualities = analysis.qualities
     if qualities is None or qualities.stiffness is None:
         return None
     return {"survey": qualities.stiffness, "cable": qualities.cable.name}
 
 
-def clearance(source: Source) -> Context | None:
+def clearance(analysis: Analysis) -> Context | None:
     """How near things come; None if the study asks for no clearance, or no cable holds."""
-    qualities = source.analysis.qualities
+    qualities = analysis.qualities
     if qualities is None or qualities.interference is None:
         return None
     survey = qualities.interference
@@ -66,18 +83,18 @@ def proof_statement(proved: Proof) -> Statement:
     return plain_statement("report/proved.html.j2", {"proved": proved})
 
 
-def proof(source: Source) -> Context | None:
+def proof(analysis: Analysis) -> Context | None:
     """What was proved of the chosen rope, and how; None where nothing was to be."""
-    selection = source.analysis.selection
+    selection = analysis.selection
     proved = None if selection is None else selection.proof
     if proved is None or proved.status == "off":
         return None
     return {"proved": proved}
 
 
-def assumptions(source: Source) -> Context:
+def assumptions(analysis: Analysis) -> Context:
     """What the results rest on."""
-    analysis, robot = source.analysis, source.analysis.built.robot
+    robot = analysis.built.robot
     force, moment = np.split(robot.platform.wrench_N, [3])
     down = robot.gravity_direction / np.linalg.norm(robot.gravity_direction)
     qualities = analysis.qualities
@@ -93,26 +110,26 @@ def assumptions(source: Source) -> Context:
     }
 
 
-def nomenclature(_: Source) -> Context:
+def nomenclature(_: Analysis) -> Context:
     """The names of quantities, which stand in the template."""
     return {}
 
 
-def verification(source: Source) -> Context | None:
+def verification(analysis: Analysis) -> Context | None:
     """Ours beside what other methods find; None where nothing was solved."""
-    answers = source.analysis.verification
+    answers = analysis.verification
     if not answers:
         return None
     return {"answers": answers}
 
 
-def uncertainty(source: Source) -> Context | None:
+def uncertainty(analysis: Analysis) -> Context | None:
     """Probabilities and shares; None where nobody asked and no modulus is borrowed."""
     from designer.analysis.uncertainty.shares import SCRAMBLES
 
-    survey = source.analysis.uncertainty
+    survey = analysis.uncertainty
     if survey is None:
-        asks = source.analysis.study.uncertainty is not None
+        asks = analysis.study.uncertainty is not None
         return {"uncertainty": None} if asks else None
     sizes = [
         {"odds": odds, "median": middle, "highest": high}
@@ -126,9 +143,9 @@ def _percentiles(values: FloatArray, *percents: float) -> list[float]:
     return [float(np.percentile(values, percent, method="higher")) for percent in percents]
 
 
-def left_out(source: Source) -> Context | None:
+def left_out(analysis: Analysis) -> Context | None:
     """The grades that were not considered; None without a selection."""
-    analysis, selection = source.analysis, source.analysis.study.selection
+    selection = analysis.study.selection
     if selection is None:
         return None
     grades, allowed = analysis.catalogue.grades, selection.grades
@@ -148,39 +165,38 @@ def left_out(source: Source) -> Context | None:
     }
 
 
-def inputs(source: Source) -> Context:
+def inputs(analysis: Analysis) -> Context:
     """The fields that the file gives."""
-    entries = source.analysis.study.source.entries
+    entries = analysis.study.source.entries
     given = [(entry.field, _as_given(entry)) for entry in entries if entry.given != "default"]
-    return {"given": _halves(given), "has_defaults": bool(_defaults(source))}
+    return {"given": _halves(given), "has_defaults": bool(_defaults(analysis))}
 
 
-def provenance(source: Source) -> Context:
+def provenance(analysis: Analysis) -> Context:
     """Program, libraries, config, time, settings, sources of grades, defaults."""
     from designer.kernel.answer import TOLERANCE
 
-    analysis = source.analysis
     files = ["every candidate in candidates.csv"] if analysis.selection is not None else []
     if analysis.sweep_file is not None:
         files.append(f"every sample in {analysis.sweep_file.name}")
-    left = _left_at_default(source)
+    left = _left_at_default(analysis)
     return {
         "tolerance": TOLERANCE,
         "files": files,
-        "defaults": _halves(_defaults(source)),
+        "defaults": _halves(_defaults(analysis)),
         "not_given": [entry.field for entry in left if entry.value_SI == "none"],
     }
 
 
-def _left_at_default(source: Source) -> list[Entry]:
+def _left_at_default(analysis: Analysis) -> list[Entry]:
     """Return the fields left out, but those that a drawing office writes on a document."""
-    entries = source.analysis.study.source.entries
+    entries = analysis.study.source.entries
     return [e for e in entries if e.given == "default" and not e.field.startswith("document.")]
 
 
-def _defaults(source: Source) -> list[tuple[str, str]]:
+def _defaults(analysis: Analysis) -> list[tuple[str, str]]:
     """Return the fields left out that have a value all the same."""
-    return [(e.field, e.value_SI) for e in _left_at_default(source) if e.value_SI != "none"]
+    return [(e.field, e.value_SI) for e in _left_at_default(analysis) if e.value_SI != "none"]
 
 
 def _as_given(entry: Entry) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from designer.analysis.rope_maps import rope_maps
 from designer.report import format as fmt
 from designer.report.captions import LITTLE, sag_matters
 from designer.report.design.carries import STEP_M, shares_of_inputs, slopes_of_moves
@@ -16,7 +17,8 @@ from designer.report.odds import INPUT_NAMES
 from designer.report.pictures import Drawing, in_space, vector
 
 if TYPE_CHECKING:
-    from designer.report.design.source import Source
+    from designer.analysis.analyse import Analysis
+    from designer.analysis.maps import WorkspaceMaps
     from designer.report.figures.stage import Image
 
 
@@ -24,7 +26,7 @@ def chart(draw: Callable[[Drawings], str | None]) -> cached_property[Drawing | N
     """Make a chart of what returns its SVG; None where figures are not drawn."""
 
     def drawn(drawings: Drawings) -> Drawing | None:
-        return vector(draw(drawings)) if drawings.source.draws else None
+        return vector(draw(drawings)) if drawings.draws else None
 
     drawn.__doc__ = draw.__doc__
     return cached_property(drawn)
@@ -34,7 +36,7 @@ def scene(draw: Callable[[Drawings], Image | None]) -> cached_property[Drawing |
     """Make a picture in space of what returns its image; None where scenes are not drawn."""
 
     def drawn(drawings: Drawings) -> Drawing | None:
-        return in_space(draw(drawings)) if drawings.source.draws_scenes else None
+        return in_space(draw(drawings)) if drawings.draws_scenes else None
 
     drawn.__doc__ = draw.__doc__
     return cached_property(drawn)
@@ -45,13 +47,37 @@ class Drawings:
 
     Parameters
     ----------
-    source : Source
-        What is drawn, and whether anything is.
+    analysis : Analysis
+        What is drawn.
+    draws : bool
+        Whether figures are drawn.
+    missing : str
+        Why pictures in space are left out; empty where they are not.
     """
 
-    def __init__(self, source: Source) -> None:
-        self.source = source
-        self.analysis = source.analysis
+    def __init__(self, analysis: Analysis, draws: bool = False, missing: str = "") -> None:
+        self.analysis, self.draws, self.missing = analysis, draws, missing
+
+    @property
+    def draws_scenes(self) -> bool:
+        """Whether pictures in space are drawn."""
+        return self.draws and not self.missing
+
+    @cached_property
+    def maps(self) -> WorkspaceMaps | None:
+        """What the figures of the workspace show; None without them."""
+        if not self.draws or self.analysis.workspace is None:
+            return None
+        from designer.analysis.maps import workspace_maps
+
+        return workspace_maps(self.analysis)
+
+    @cached_property
+    def rope_maps(self) -> WorkspaceMaps | None:
+        """What the maps of the ropes of the answer show; None without them."""
+        if self.maps is None or self.analysis.ropes is None:
+            return None
+        return rope_maps(self.maps, self.analysis.ropes)
 
     @chart
     def stiffness(self) -> str | None:
@@ -156,23 +182,22 @@ class Drawings:
     @cached_property
     def cover(self) -> Drawing | None:
         """The picture of the first page: the region for the ropes or the family, else the robot."""
-        return self.robot if self.source.maps is None else self._region_on_first_page
+        return self.robot if self.maps is None else self._region_on_first_page
 
     @scene
     def _region_on_first_page(self) -> Image | None:
         from designer.report.figures.colours import DIAMETER, UTILISATION
         from designer.report.figures.scenes import cover_scene
 
-        source = self.source
-        maps = source.rope_maps or source.maps
+        maps = self.rope_maps or self.maps
         assert maps is not None
         return cover_scene(maps, DIAMETER if self.analysis.ropes is None else UTILISATION)
 
     @cached_property
     def region(self) -> Drawing | None:
         """The region in space, coloured by the diameter that the family needs, also to turn."""
-        maps = self.source.maps
-        if maps is None or not self.source.draws_scenes:
+        maps = self.maps
+        if maps is None or not self.draws_scenes:
             return None
         from designer.report.figures.interactive import workspace_scene_html
         from designer.report.figures.scenes import workspace_scene
@@ -185,7 +210,7 @@ class Drawings:
         from designer.report.figures.colours import RATIO, UTILISATION, tension_of
         from designer.report.figures.sections import slice_panels
 
-        maps = self.source.rope_maps
+        maps = self.rope_maps
         if maps is None:
             return None
         other = RATIO if sag_matters(maps) else tension_of(maps.section)
@@ -197,7 +222,7 @@ class Drawings:
         from designer.report.figures.colours import DIAMETER, RATIO, tension_of
         from designer.report.figures.sections import slice_panels
 
-        maps = self.source.maps
+        maps = self.maps
         if maps is None:
             return None
         quantities = DIAMETER, tension_of(maps.section)
@@ -208,14 +233,14 @@ class Drawings:
         """The needed diameter from the centre of the region outward."""
         from designer.report.figures.charts_edge import edge_chart
 
-        return None if self.source.maps is None else edge_chart(self.source.maps)
+        return None if self.maps is None else edge_chart(self.maps)
 
     @chart
     def served(self) -> str | None:
         """The share of the poses over the diameter."""
         from designer.report.figures.charts_shares import served_chart
 
-        return None if self.source.maps is None else served_chart(self.source.maps.served)
+        return None if self.maps is None else served_chart(self.maps.served)
 
     @chart
     def verdicts(self) -> str | None:
@@ -254,7 +279,7 @@ class Drawings:
         """The part of the region that each size of a grade serves; None where all serve alike."""
         from designer.report.figures.scenes import usable_scene
 
-        selection, maps = self.analysis.selection, self.source.maps
+        selection, maps = self.analysis.selection, self.maps
         usable = None if selection is None else selection.usable
         if usable is None or not usable.differs or maps is None:
             return None

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,9 +24,6 @@ from designer.selection.efficiency import Allowance
 from designer.selection.objectives import MEANINGS
 from designer.statics.task import LONG
 from designer.study import Study, rope_effects
-
-if TYPE_CHECKING:
-    from designer.report.design.source import Source
 
 Context = Mapping[str, object]
 
@@ -119,21 +115,20 @@ def outside_pose(analysis: Analysis) -> PoseOutside | None:
     return PoseOutside(outside, qualities.cable.name, largest)
 
 
-def first_page(source: Source) -> Context:
+def first_page(analysis: Analysis) -> Context:
     """Return what the templates of the first page get."""
-    analysis, findings = source.analysis, source.analysis.findings
+    findings = analysis.findings
     return {
         "answer": analysis.answer.value,
         "unmet": [Unmet(tuple(cases)) for cases in unmet_by_title(analysis.unmet)],
         "chosen": analysis.assignment.rope,
         "need": analysis.most_needed,
         "groups": analysis.groups,
-        "maps": source.rope_maps or source.maps,
         "tight": _TIGHT,
         **_card(analysis),
         **_advice(analysis, findings),
         **_sureness(analysis, findings),
-        "weight": _weight(source),
+        "weight": _weight(analysis),
         "massless": None if analysis.ropes is None else findings.massless_choice,
         "beside_fibre": _beside_fibre(analysis),
     }
@@ -327,15 +322,15 @@ def _margin(analysis: Analysis, findings: Findings) -> Context | None:
     return None
 
 
-def _weight(source: Source) -> Context | None:
+def _weight(analysis: Analysis) -> Context | None:
     """Compare with and without the weight of the cables: of the chosen ropes at their worst pose.
 
     Without a rope of the configured family at the worst pose, or the configured one; None where
     nothing compares.
     """
-    rope = source.analysis.ropes
+    rope = analysis.ropes
     if rope is None:
-        return _at_the_worst_poses(source.analysis) or _at_the_configured_pose(source.analysis)
+        return _at_the_worst_poses(analysis) or _at_the_configured_pose(analysis)
     statics, straight_N = rope.worst, rope.straight.tension_N
     if not statics.is_solved or not (straight_N >= 0.0).all():
         return {"is_held_straight": False}

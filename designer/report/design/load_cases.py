@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
+from designer.analysis.analyse import Analysis
 from designer.report.material_class import class_of
 from designer.report.phrases import warmer
 from designer.selection.candidate import Candidate
@@ -12,14 +12,11 @@ from designer.selection.samples import FEW_SAMPLES
 from designer.statics.cable_loss import Fate
 from designer.study import Study
 
-if TYPE_CHECKING:
-    from designer.report.design.source import Source
 
-
-def load_cases(source: Source) -> Mapping[str, object] | None:
+def load_cases(analysis: Analysis) -> Mapping[str, object] | None:
     """What the chosen rope meets in each load case; None where the study has none."""
-    study, selection = source.analysis.study, source.analysis.selection
-    needs = source.analysis.needs
+    study, selection = analysis.study, analysis.selection
+    needs = analysis.needs
     if not needs and (not study.load_cases or selection is None):
         return None
     chosen = None if selection is None or needs else selection.chosen

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, SupportsFloat
+from typing import SupportsFloat
 
 import numpy as np
 
+from designer.analysis.analyse import Analysis
 from designer.analysis.pose import PoseAnalysis
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.design.first_page import outside_pose
 from designer.sizing.loop import Iterate, LoopSizing
-
-if TYPE_CHECKING:
-    from designer.report.design.source import Source
 
 Context = Mapping[str, object]
 
@@ -26,16 +24,16 @@ _FAR = 100.0
 """Tension over that of the start from where on a diverging iteration has no figures."""
 
 
-def pose(source: Source) -> Context | None:
+def pose(analysis: Analysis) -> Context | None:
     """What is known of the configured pose; None if the study has none."""
-    found = source.analysis.pose
+    found = analysis.pose
     if found is None:
         return None
     statics = found.sizing.statics
     return {
         "pose": found,
         "verdict": Verdict(int(statics.verdict)),
-        "pose_outside": outside_pose(source.analysis),
+        "pose_outside": outside_pose(analysis),
         "rotation_vector_deg": _rotation_vector_deg(found),
         "balance_residual": float(np.max(np.abs(statics.equilibrium_residual_N())))
         if statics.is_solved

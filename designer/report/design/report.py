@@ -10,19 +10,18 @@ from designer.report.design import (
     carries,
     checks,
     contexts,
-    groups,
     load_cases,
     pose,
     selection,
     workspace,
 )
 from designer.report.design.contexts import Context, shared
+from designer.report.design.drawings import Drawings
 from designer.report.design.first_page import first_page
-from designer.report.design.source import Source, source_of
 from designer.report.design.workshop import fabrication
 from designer.report.document import Report, Section
 
-SECTIONS: tuple[tuple[str, Callable[[Source], Context | None]], ...] = (
+SECTIONS: tuple[tuple[str, Callable[[Analysis], Context | None]], ...] = (
     ("answer", first_page),
     ("inputs", contexts.inputs),
     ("checks", checks.requirements),
@@ -31,7 +30,7 @@ SECTIONS: tuple[tuple[str, Callable[[Source], Context | None]], ...] = (
     ("load-cases", load_cases.load_cases),
     ("workspace", workspace.workspace),
     ("selection", selection.selection),
-    ("groups", groups.groups),
+    ("groups", contexts.groups),
     ("stiffness", contexts.stiffness),
     ("clearance", contexts.clearance),
     ("workshop", fabrication),
@@ -50,32 +49,34 @@ None instead of a context where the study gives nothing for the section.
 """
 
 
-def section(source: Source, section_id: str) -> Section | None:
+def section(drawings: Drawings, section_id: str) -> Section | None:
     """Return a section by its id; None where the study gives nothing for it."""
-    context = dict(SECTIONS)[section_id](source)
+    context = dict(SECTIONS)[section_id](drawings.analysis)
     if context is None:
         return None
     kind = ""
     if section_id == "answer":
-        kind = "first-page" if source.analysis.unmet else "first-page alone"
-    return Section(section_id, kind=kind, context={**shared(source), **context})
+        kind = "first-page" if drawings.analysis.unmet else "first-page alone"
+    return Section(section_id, kind=kind, context={**shared(drawings), **context})
 
 
 def design_report(analysis: Analysis, *, draws: bool = True) -> Report:
     """Return the report on an analysis; with ``draws`` false, without figures."""
-    return report_from(source_of(analysis, draws=draws))
+    from designer.report.figures.opengl import why_no_scenes
+
+    return report_from(Drawings(analysis, draws, why_no_scenes() if draws else ""))
 
 
-def report_from(source: Source) -> Report:
-    """Return the report from what its sections are made from."""
-    analysis = source.analysis
+def report_from(drawings: Drawings) -> Report:
+    """Return the report from its figures, and from what they show."""
+    analysis = drawings.analysis
     return Report.of(
         "report",
         analysis.study.name,
         "Cable design report",
         analysis.provenance.created,
-        (section(source, section_id) for section_id, _ in SECTIONS),
+        (section(drawings, section_id) for section_id, _ in SECTIONS),
         version=analysis.provenance.version,
-        missing=source.missing,
+        missing=drawings.missing,
         control=control_of(analysis.study, analysis.catalogue),
     )

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
+from designer.analysis.analyse import Analysis
 from designer.grades.grade import TRUST_MEANING
 from designer.report import format as fmt
-from designer.report.design.source import Source
 from designer.report.document import MOST_ROWS
 from designer.report.figures.charts_selection import rank
 from designer.selection.candidate import Candidate, Standing
@@ -21,9 +21,9 @@ _MOST_NAMES = 3
 _EXCLUDED: tuple[Standing, ...] = ("dominated", "too_thin", "not_held", "not_comparable")
 
 
-def selection(source: Source) -> Context | None:
+def selection(analysis: Analysis) -> Context | None:
     """What was chosen and tried; None if the study asks for no rope."""
-    return None if source.analysis.selection is None else context_of(source.analysis.selection)
+    return None if analysis.selection is None else context_of(analysis.selection)
 
 
 def context_of(result: SelectionResult) -> Context:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 from designer.analysis.analyse import Analysis
 from designer.grades.grade import Grade, Size
-from designer.report.design.source import Source
 from designer.selection.efficiency import Allowance
 
 DEAD_TURNS = 3
@@ -55,19 +54,19 @@ class FabricatedCable:
         return math.ceil(10.0 * (self.longest_m + dead_m)) / 10.0
 
 
-def fabrication(source: Source) -> Mapping[str, object] | None:
+def fabrication(analysis: Analysis) -> Mapping[str, object] | None:
     """Lengths of each cable, and what its rope asks of drums; None without a product."""
-    cables = list(_cables(source.analysis))
+    cables = list(_cables(analysis))
     if not cables:
         return None
-    assert source.analysis.study.selection is not None
+    assert analysis.study.selection is not None
     ropes: dict[tuple[str, str], list[FabricatedCable]] = {}
     for cable in cables:
         ropes.setdefault((cable.grade.id, cable.size.id), []).append(cable)
     return {
         "cables": cables,
         "ropes": [*ropes.values()],
-        "allowance": Allowance.of(source.analysis.study.selection),
+        "allowance": Allowance.of(analysis.study.selection),
         "dead_turns": DEAD_TURNS,
     }
 

@@ -11,45 +11,42 @@ import numpy as np
 from designer.analysis.analyse import Analysis
 from designer.model.cable import Material
 from designer.model.verdict import Verdict
-from designer.report.design.source import Source
 from designer.selection.candidate import Candidate
 from designer.selection.result import GradeOutcome
 
 Context = Mapping[str, object]
 
 
-def workspace(source: Source) -> Context | None:
+def workspace(analysis: Analysis) -> Context | None:
     """What is known of all poses, of the ropes of the answer, else of the configured family.
 
     None if the study has no workspace.
     """
-    ropes = source.analysis.ropes
-    if source.analysis.workspace is None:
+    ropes = analysis.ropes
+    if analysis.workspace is None:
         return None
     if ropes is None:
-        return {"ropes": None, **_of_family(source)}
-    return {"ropes": ropes, "map": source.analysis.workspace, "maps": source.rope_maps}
+        return {"ropes": None, **_of_family(analysis)}
+    return {"ropes": ropes, "map": analysis.workspace}
 
 
-def family(source: Source) -> Context | None:
+def family(analysis: Analysis) -> Context | None:
     """What all poses ask of the configured family, where a rope is the answer."""
-    analysis = source.analysis
     if analysis.workspace is None or analysis.ropes is None:
         return None
     outcome = analysis.findings.chosen_outcome
     beside = None if outcome is None else _comparison(analysis, outcome)
-    return {"ropes": analysis.ropes, "comparison": beside, **_of_family(source)}
+    return {"ropes": analysis.ropes, "comparison": beside, **_of_family(analysis)}
 
 
-def _of_family(source: Source) -> Context:
-    analysis, workspace = source.analysis, source.analysis.study.workspace
+def _of_family(analysis: Analysis) -> Context:
+    workspace = analysis.study.workspace
     assert workspace is not None and analysis.workspace is not None
     counts = [(v, analysis.workspace.census.statuses[v.label]) for v in Verdict]
     robot, corners = analysis.built.robot, np.array([*product(*workspace.region.bounds_m.T)])
     up = robot.upright[2]
     return {
         "map": analysis.workspace,
-        "maps": source.maps,
         "other": analysis.findings.other_policy,
         "verdicts": [(verdict, amount) for verdict, amount in counts if amount > 0],
         "other_verdicts": [verdict.label for verdict, amount in counts if amount == 0],
