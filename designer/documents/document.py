@@ -6,7 +6,6 @@ import hashlib
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -78,7 +77,7 @@ def document_of(raw: bytes, name: str, kind: FileKind = STUDY) -> Document:
     InputError
         As there.
     """
-    composer = _Composer(name)
+    composer = Composer(name)
     root = composer.compose(decode(raw, name))
     if root is None:
         _refuse(name, None, "the file is empty", kind.content)
@@ -106,13 +105,19 @@ def decode(raw: bytes, name: str) -> str:
     return text
 
 
-class _Composer:
-    """Builds the tree from the parser's events, one by one, so that nothing expands unseen."""
+class Composer:
+    """Builds the tree from the parser's events, one by one, so that nothing expands unseen.
 
-    def __init__(self, name: str) -> None:
+    ``faults`` are fields that are given twice, ``anchored`` the values with an anchor, each by
+    where it starts.
+    """
+
+    def __init__(self, name: str = "") -> None:
         self.faults: list[Fault] = []
+        self.anchored: dict[int, Node] = {}
         self._name = name
-        self._events: Iterator[yaml.Event] = iter(())
+        self._events: Iterator[Any] = iter(())
+        self._end = 0  # of the collection that was read last
         self._anchors: dict[str, Node | None] = {}  # None for what is not at its end yet
 
     def compose(self, text: str) -> Node | None:
@@ -148,7 +153,7 @@ class _Composer:
         """Return the value at a path that begins with an event."""
         import yaml
 
-        line = _line(event)
+        line, start, end = _line(event), event.start_mark.index, event.end_mark.index
         if isinstance(event, yaml.AliasEvent):
             anchor = str(event.anchor)
             if anchor not in self._anchors:
@@ -162,20 +167,21 @@ class _Composer:
             tag = printable(event.tag.replace("tag:yaml.org,2002:", "!!"))
             _refuse(self._name, line, f"the tag '{tag}' is not supported", "plain YAML")
         if isinstance(event, yaml.ScalarEvent):
-            node = Node(line, event.value, event.implicit[0])
+            node = Node(line, event.value, event.implicit[0], start=start, end=end)
         else:
             if len(keys) >= DEEPEST_NESTING:
                 self._refuse_nesting(line)
             if event.anchor is not None:
                 self._anchors[event.anchor] = None
             is_mapping = isinstance(event, yaml.MappingStartEvent)
-            node = self._collection(line, self._fields(keys) if is_mapping else self._items(keys))
+            node = self._collection(event, self._fields(keys) if is_mapping else self._items(keys))
         if event.anchor is not None:
-            self._anchors[event.anchor] = node
+            self._anchors[event.anchor] = self.anchored[start] = node
         return node
 
-    def _collection(self, line: int, content: tuple[Node, ...] | dict[str, Node]) -> Node:
-        children = content if isinstance(content, tuple) else content.values()
+    def _collection(self, event: Any, content: tuple[Node, ...] | dict[str, Node]) -> Node:
+        line, is_flow = _line(event), event.flow_style
+        children = content if isinstance(content, tuple) else tuple(content.values())
         size = 1 + sum(child.size for child in children)
         height = 1 + max((child.height for child in children), default=0)
         if size > MOST_VALUES:
@@ -183,7 +189,9 @@ class _Composer:
             _refuse(self._name, line, problem)
         if height > DEEPEST_NESTING:
             self._refuse_nesting(line)
-        return Node(line, content, size=size, height=height)
+        end = self._end if is_flow or not children else children[-1].end
+        start = event.start_mark.index
+        return Node(line, content, False, size, height, start, end, is_flow=is_flow)
 
     def _items(self, keys: Keys) -> tuple[Node, ...]:
         items: list[Node] = []
@@ -206,14 +214,18 @@ class _Composer:
                 problem = f"is given twice, first in line {fields[name].line}"
                 self.faults.append(Fault(self._name, line, path_text(place), problem, "once"))
             else:
-                fields[name] = replace(value, line=line)
+                fields[name] = replace(value, line=line, name_start=event.start_mark.index)
         return fields
 
-    def _until_end(self) -> Iterator[yaml.Event]:
+    def _until_end(self) -> Iterator[Any]:
         """Yield what begins in the collection that is open, up to its end."""
         import yaml
 
-        return takewhile(lambda event: not isinstance(event, yaml.CollectionEndEvent), self._events)
+        for event in self._events:
+            if isinstance(event, yaml.CollectionEndEvent):
+                self._end = getattr(event.end_mark, "index", 0)
+                return
+            yield event
 
     def _refuse_nesting(self, line: int | None) -> NoReturn:
         problem = f"values are nested more than {DEEPEST_NESTING} levels deep"

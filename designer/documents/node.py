@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from designer.units import split_quantity
@@ -51,6 +51,11 @@ class Node:
         Whether a text stands without quotes, so that it may be a number or a truth value.
     size, height : int
         Values and levels of nesting below this one, aliases expanded; itself is counted as a value.
+    start, end, name_start : int
+        Letters of the text before it, up to its end without blanks and comments, and before its
+        name if it is a field of a mapping.
+    is_flow : bool
+        Whether it is a mapping or list in brackets.
     """
 
     line: int
@@ -58,6 +63,10 @@ class Node:
     is_plain: bool = False
     size: int = 1
     height: int = 0
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+    name_start: int = field(default=0, compare=False)
+    is_flow: bool = field(default=False, compare=False)
 
     def data(self) -> Data:
         """Return the value in plain Python, by the rules of YAML 1.2 (``no`` is a text)."""
