@@ -85,32 +85,6 @@ class RopeRow:
         return self.utilisation <= 1.0 and self.standing != "rejected"
 
 
-@dataclass(frozen=True, slots=True)
-class GroupRow:
-    """What a group of cables gets: its name, cable numbers, rope, and the largest utilisation."""
-
-    name: str
-    cables: tuple[int, ...]
-    rope: Rope
-    utilisation: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Groups:
-    """Ropes for groups of cables; no rows where no assignment was found."""
-
-    rows: tuple[GroupRow, ...]
-    total_mass_kg: float
-    single_mass_kg: float  # Of the lightest one rope for all; NaN where there is none
-    proof: str
-
-    @property
-    def assignment(self) -> RopePerCable | None:
-        """The rope of each cable, to be looked at; None where none was found."""
-        of = {cable: row.rope for row in self.rows for cable in row.cables}
-        return RopePerCable(tuple(of[cable] for cable in sorted(of))) if of else None
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Ropes:
     """All ropes; of the full selection with the answer to the study.
@@ -130,8 +104,8 @@ class Ropes:
     is_final : bool
         Whether this is the full selection, as in the report; else what a part of the samples tells,
         which is no proof.
-    groups : Groups or None
-        Where the study has groups, and the selection is full.
+    groups : GroupChoice or None
+        What groups of cables get, where the study has some and the selection is full.
     csv : str
         ``candidates.csv`` as the report has it; empty unless final.
     problems : tuple of str
@@ -150,7 +124,7 @@ class Ropes:
     objectives: tuple[Objective, ...]
     currency: str
     is_final: bool
-    groups: Groups | None = None
+    groups: GroupChoice | None = None
     csv: str = ""
     problems: tuple[str, ...] = ()
     proof: Proof | None = None
@@ -160,6 +134,14 @@ class Ropes:
     def row(self, rope: Rope | RopePerCable | None) -> RopeRow | None:
         """Return the row of a rope; None where there is none."""
         return next((row for row in self.rows if row.rope == rope), None)
+
+    @property
+    def assignment(self) -> RopePerCable | None:
+        """The rope of each cable by its group, to be looked at; None where none was found."""
+        if self.groups is None or not self.groups.chosen.is_found:
+            return None
+        ropes = self.groups.chosen.by_cable
+        return RopePerCable(tuple(Rope(rope.grade.id, rope.size.id) for rope in ropes))
 
     @property
     def makers(self) -> tuple[str, ...]:
@@ -299,7 +281,7 @@ def ropes_of(selection: SelectionResult, groups: GroupChoice | None = None) -> R
         objectives=selection.objectives,
         currency=selection.currency or "",
         is_final=True,
-        groups=None if groups is None else _groups(groups),
+        groups=groups,
         csv=candidates_csv(selection),
         proof=selection.proof,
     )
@@ -309,14 +291,3 @@ def _full_row(candidate: Candidate) -> RopeRow:
     fails = any(requirement.state is State.FAILS for requirement in candidate.requirements)
     standing = "rejected" if fails else candidate.standing
     return _row(candidate, standing, candidate.reason, candidate.verification.is_refined)
-
-
-def _groups(choice: GroupChoice) -> Groups:
-    chosen = choice.chosen
-    utilisation = chosen.verification.utilisation
-    rows = tuple(
-        GroupRow(group.name, group.cables, Rope(rope.grade.id, rope.size.id), float(used))
-        for group, rope, used in zip(chosen.groups, chosen.ropes, utilisation, strict=True)
-    )
-    masses = chosen.total_mass_kg, choice.single.total_mass_kg
-    return Groups(rows, *masses, choice.proof_sentence)

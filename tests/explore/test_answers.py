@@ -16,7 +16,7 @@ from designer.cli.commands import main
 from designer.explore.here import here
 from designer.explore.map import map_answer, unserved, values_at, worst_answer
 from designer.explore.quantities import CHEAP, QUANTITIES, category_labels
-from designer.explore.question import Question, Rope
+from designer.explore.question import Question, Rope, RopePerCable
 from designer.explore.ropes import full_ropes, quick_ropes, ropes_of
 from designer.explore.session import Session
 from designer.model.robot import Poses
@@ -266,12 +266,12 @@ def test_ropes_for_groups_of_cables(yard: Session) -> None:
     assert analysis.groups is not None
     assert analysis.assignment.has_groups
     assert ropes.groups is not None
-    assert [row.cables for row in ropes.groups.rows] == [(1, 2), (3,)]
-    products = [Rope(one.grade.id, one.size.id) for one in analysis.assignment.ropes]
-    assert [row.rope for row in ropes.groups.rows] == products
-    assert ropes.groups.total_mass_kg == analysis.assignment.total_mass_kg
-    assert ropes.groups.proof == analysis.groups.proof_sentence
-    yard.choose(ropes.groups.assignment)
+    assert [group.cables for group in ropes.groups.groups] == [(1, 2), (3,)]
+    products = [Rope(one.grade.id, one.size.id) for one in analysis.assignment.by_cable]
+    assert ropes.assignment == RopePerCable(tuple(products))
+    assert ropes.groups.chosen.total_mass_kg == analysis.assignment.total_mass_kg
+    assert ropes.groups.proof_sentence == analysis.groups.proof_sentence
+    yard.choose(ropes.assignment)
     worst = worst_answer(question_of(yard))
     assert worst is not None
     assert worst.rope is not None

@@ -26,7 +26,8 @@ from designer.report.design.contexts import proof_statement
 
 if TYPE_CHECKING:
     from designer.explore.question import Rope, RopePerCable
-    from designer.explore.ropes import Groups, RopeRow, Ropes
+    from designer.explore.ropes import RopeRow, Ropes
+    from designer.selection.groups.result import GroupChoice
 
 _ALL_MATERIALS, _ALL_MAKERS = "all materials", "all makers"
 _NOTHING = "Nothing yet: ropes are compared over the workspace of the study."
@@ -133,8 +134,8 @@ class PanelRopes(QWidget):
         grey_when_old(live, {"ropes"}, self.answer, self.groups, self.table)
 
     def _choose_groups(self) -> None:
-        if self._ropes is not None and self._ropes.groups is not None:
-            self._live.choose(self._ropes.groups.assignment)
+        if self._ropes is not None:
+            self._live.choose(self._ropes.assignment)
 
     def _follow_rope(self) -> None:
         """Mark the rope that colours the map."""
@@ -154,7 +155,7 @@ class PanelRopes(QWidget):
         groups = None if ropes is None else ropes.groups
         self.groups.setText("" if groups is None else _groups_text(groups))
         self.groups.setVisible(groups is not None)
-        self.look_at_groups.setVisible(groups is not None and bool(groups.rows))
+        self.look_at_groups.setVisible(ropes is not None and ropes.assignment is not None)
         self._mark_current()
 
     def _mark_current(self) -> None:
@@ -194,13 +195,15 @@ def _answer(ropes: Ropes) -> str:
     return "\n".join(lines)
 
 
-def _groups_text(groups: Groups) -> str:
+def _groups_text(choice: GroupChoice) -> str:
     """Which rope each group gets, and how sure that is."""
-    each = [
-        f"{row.name}: {row.rope.label} ({fmt.utilisation(row.utilisation)})" for row in groups.rows
-    ]
-    if not each:
-        return f"Groups: none was found. {groups.proof}"
-    masses = f"{fmt.kilograms(groups.total_mass_kg)}, one rope for all "
-    masses += fmt.kilograms(groups.single_mass_kg)
-    return f"Groups: {'; '.join(each)}. All cables {masses}. {groups.proof}"
+    chosen, proof = choice.chosen, choice.proof_sentence
+    if not chosen.is_found:
+        return f"Groups: none was found. {proof}"
+    each = zip(chosen.groups, chosen.ropes, chosen.verification.utilisation, strict=True)
+    words = "; ".join(
+        f"{group.name}: {rope.label} ({fmt.utilisation(used)})" for group, rope, used in each
+    )
+    masses = f"{fmt.kilograms(chosen.total_mass_kg)}, one rope for all "
+    masses += fmt.kilograms(choice.single.total_mass_kg)
+    return f"Groups: {words}. All cables {masses}. {proof}"
