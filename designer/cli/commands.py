@@ -261,8 +261,7 @@ def diagnose(
     from designer.diagnosis.design import with_design
     from designer.diagnosis.diagnose import diagnose_study
     from designer.io.diagnosis_files import diagnosed_config
-    from designer.report.diagnosis.check import write_check
-    from designer.report.diagnosis.report import write_diagnosis
+    from designer.report.diagnosis.report import write_check, write_diagnosis
 
     doing = "checking" if checks else "searching"
     with output_folder(folder) as building, ProgressBars(doing) as bars:

@@ -43,7 +43,7 @@ def _print_rows(title: str, rows: Iterable[Row], *headings: str) -> None:
 
 
 def _print_written(folder: Path, written: Sequence[str]) -> None:
-    from designer.report.paper import why_no_pdf
+    from designer.report.templates import why_no_pdf
 
     show(f"{folder}: {', '.join(written)}", markup=False)
     if why_no_pdf():
@@ -81,7 +81,7 @@ def summary_rows(analysis: Analysis) -> Iterator[Row]:
         label = "cable" if analysis.groups is None else "one for all"
         yield from _summary_of_selection(analysis.selection, label, analysis.study.selection)
     if analysis.uncertainty is not None and analysis.uncertainty.is_asked:
-        from designer.report.odds import in_a_sentence
+        from designer.report.phrases import in_a_sentence
 
         yield "  probability", in_a_sentence(analysis.uncertainty).replace("\u00a0", " ")
     yield from _summary_of_requirements(analysis)

@@ -16,7 +16,7 @@ import math
 import re
 from dataclasses import dataclass
 from statistics import median
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import Field
 
@@ -61,6 +61,9 @@ TYPICAL_LOAD_FRACTION = 0.2
 what a search for the tension that a rope meets starts from."""
 
 
+MaterialClass = Literal["steel", "stainless steel", "fibre", "not stated"]
+MATERIAL_CLASSES: tuple[MaterialClass, ...] = get_args(MaterialClass)
+"""In the order of a legend."""
 TRUST_MEANING = {
     "A": "the maker's own or a standard's own table",
     "B": "a seller's transcript or a secondary table, consistent in itself",
@@ -238,6 +241,13 @@ class Grade(GradeSheet):
         """
         ratio = self.sheave_ratio
         return math.pi * (ratio.suggested + 1.0) * size.diameter_m if ratio else math.nan
+
+    @property
+    def material_class(self) -> MaterialClass:
+        """What it bears its load with, in the classes that a reviewer tells apart."""
+        if self.material in ("steel", "stainless steel"):
+            return self.material
+        return "not stated" if self.material in (None, "other") else "fibre"
 
     @property
     def why_only_by_name(self) -> str | None:

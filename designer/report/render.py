@@ -15,8 +15,7 @@ from designer.report.design.report import design_report
 from designer.report.document import Report, Section
 from designer.report.fonts import with_fonts
 from designer.report.outline import add_outline
-from designer.report.paper import why_no_pdf
-from designer.report.templates import check_templates, environment, told_in_one_line
+from designer.report.templates import check_templates, environment, told_in_one_line, why_no_pdf
 
 if TYPE_CHECKING:
     from jinja2 import Environment

@@ -8,21 +8,28 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib.util import find_spec
 from inspect import isfunction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from designer.errors import Fault, InputError, one_line
-from designer.report import captions, material_class, odds, phrases
+from designer.report import captions, phrases
 from designer.report import format as fmt
 from designer.report.diagnosis import words
-from designer.report.paper import why_no_pdf
 from designer.resources import data_folder
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
 _KINDS = ("*.j2", "*.css")
+
+
+def why_no_pdf() -> str:
+    """Return why no PDF can be made here; empty where it can."""
+    if find_spec("plutoprint") is not None:
+        return ""
+    return "The PDF is left out: PlutoPrint, which makes it, has no wheel for this kind of machine."
 
 
 def environment(user_folder: Path | None = None) -> Environment:
@@ -58,7 +65,7 @@ def _filters() -> dict[str, Callable[..., object]]:
     """Return the public functions of the rooms of words, by name."""
     return {
         name: function
-        for module in (fmt, phrases, captions, odds, material_class, words)
+        for module in (fmt, phrases, captions, words)
         for name, function in vars(module).items()
         if isfunction(function) and not name.startswith("_")
     }

@@ -18,7 +18,6 @@ from designer.grades.grade import Limits
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import design_report, section
 from designer.report.figures.charts_selection import pareto_chart
-from designer.report.material_class import class_of
 from designer.report.render import render_html
 
 pytestmark = pytest.mark.slow
@@ -43,7 +42,7 @@ def grouped(solve: Solve) -> Analysis:
 
 def test_a_fibre_rope_is_named_beside_the_best_of_steel(fibre: Analysis) -> None:
     assert fibre.selection is not None
-    steel = next(o.best for o in fibre.selection.outcomes if class_of(o.grade) == "steel")
+    steel = next(o.best for o in fibre.selection.outcomes if o.grade.material_class == "steel")
     assert steel is not None
     text = page_of(fibre).verdict.text
     assert "It is a rope of HMPE fibre." in text

@@ -17,7 +17,7 @@ from designer.model.uncertainty import Normal, Uncertainty, Uniform
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
 from designer.report.document import Section
-from designer.report.odds import probability
+from designer.report.phrases import probability
 
 SPREADS: Any = {"payload": Normal(0.05), "modulus": Uniform(-0.15, 0.15)}
 SHARES = (

@@ -13,7 +13,7 @@ from designer.report import format as fmt
 from designer.report.captions import LITTLE, sag_matters
 from designer.report.design.carries import STEP_M, shares_of_inputs, slopes_of_moves
 from designer.report.design.pose import weight_effect
-from designer.report.odds import INPUT_NAMES
+from designer.report.phrases import INPUT_NAMES
 from designer.report.pictures import Drawing, in_space, vector
 
 if TYPE_CHECKING:

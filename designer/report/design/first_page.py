@@ -17,7 +17,6 @@ from designer.model.requirement import Requirement, State
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.design.checks import unmet_by_title
-from designer.report.material_class import class_of
 from designer.report.phrases import lacking_loads, orientation_words
 from designer.selection.candidate import Candidate
 from designer.selection.efficiency import Allowance
@@ -139,8 +138,8 @@ def _beside_fibre(analysis: Analysis) -> Context | None:
     selection, chosen = analysis.selection, analysis.assignment.rope
     if selection is None or chosen is None:
         return None
-    solved = [o for o in selection.outcomes if class_of(o.grade) in ("steel", "stainless steel")]
-    if class_of(chosen.grade) != "fibre" or not solved:
+    solved = [o for o in selection.outcomes if "steel" in o.grade.material_class]  # any kind
+    if chosen.grade.material_class != "fibre" or not solved:
         return None
     objective = selection.objectives[0]
     holding = [outcome.best for outcome in solved if outcome.best is not None]
@@ -148,7 +147,7 @@ def _beside_fibre(analysis: Analysis) -> Context | None:
     meaning = MEANINGS[objective]
     return {
         "best": best,
-        "kind": "" if best is None else class_of(best.grade),
+        "kind": "" if best is None else best.grade.material_class,
         "extreme": "largest" if meaning.more_is_better else "least",
         "word": meaning.word,
     }

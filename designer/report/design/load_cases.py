@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from designer.analysis.analyse import Analysis
-from designer.report.material_class import class_of
 from designer.report.phrases import warmer
 from designer.selection.candidate import Candidate
 from designer.selection.samples import FEW_SAMPLES
@@ -65,6 +64,6 @@ def _expansion(study: Study, chosen: Candidate) -> Mapping[str, object] | None:
     return {
         "per_K": per_K,
         "source": source if given is None else "study",
-        "is_fibre": class_of(chosen.grade) == "fibre",
+        "is_fibre": chosen.grade.material_class == "fibre",
         "paid_out_m": abs(per_K) * _largest_change_K(study) * longest_m,
     }

@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.grades.grade import Grade
+from designer.grades.grade import MATERIAL_CLASSES, Grade
 from designer.report import format as fmt
 from designer.report.document import MOST_ROWS
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
-from designer.report.material_class import CLASSES, class_of
 from designer.selection.candidate import Candidate
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import GradeOutcome, SelectionResult
@@ -110,7 +109,7 @@ def _pale(grade: Grade) -> str:
     """Return the colour of the grade's material, mixed with white so that marks stand out."""
     from matplotlib.colors import to_hex, to_rgb
 
-    colour = np.array(to_rgb(palette.CLASS_COLOURS[class_of(grade)]))
+    colour = np.array(to_rgb(palette.CLASS_COLOURS[grade.material_class]))
     return to_hex(1.0 - 0.45 * (1.0 - colour))
 
 
@@ -143,11 +142,11 @@ def _ending(axes: Axes, row: int, outcome: GradeOutcome, *, is_chosen: bool) -> 
 
 
 def _candidates_legend(figure: Figure, outcomes: Sequence[GradeOutcome]) -> None:
-    one_each = {class_of(outcome.grade): outcome.grade for outcome in outcomes}
+    one_each = {outcome.grade.material_class: outcome.grade for outcome in outcomes}
     need: Style = {"marker": "|", "markersize": 8, "markeredgewidth": 1.6, "linestyle": "none"}
     looks: list[tuple[str, Style]] = [
         (f"sizes sold, {kind}", {"color": _pale(one_each[kind]), "linewidth": 5.0})
-        for kind in CLASSES
+        for kind in MATERIAL_CLASSES
         if kind in one_each
     ]
     looks.append(("continuous optimum", need | {"color": palette.INK}))
@@ -207,8 +206,8 @@ def _panel(axes: Axes, selection: SelectionResult, across: _Along, up: _Along) -
         (front[1:], _FRONT),
         (front[:1], _CHOSEN),
     ):
-        for kind in CLASSES:
-            points = _points([c for c in group if class_of(c.grade) == kind], across, up)
+        for kind in MATERIAL_CLASSES:
+            points = _points([c for c in group if c.grade.material_class == kind], across, up)
             axes.plot(*points.T, **palette.look_of(kind), **style)
     axes.set_xlabel(across.label)
     _scales(axes, [*_points(holding, across, up).T])
@@ -252,13 +251,13 @@ def _scales(axes: Axes, values: list[FloatArray]) -> None:
 
 
 def _pareto_legend(figure: Figure, selection: SelectionResult) -> None:
-    classes = {class_of(c.grade) for c in _holding(selection)}
+    classes = {c.grade.material_class for c in _holding(selection)}
     looks: list[tuple[str, Style]] = [
         (kind, _BEATEN | palette.look_of(kind) | {"markersize": 5.0})
-        for kind in CLASSES
+        for kind in MATERIAL_CLASSES
         if kind in classes
     ]
-    looks.append(("chosen", _CHOSEN | palette.look_of(class_of(selection.front[0].grade))))
+    looks.append(("chosen", _CHOSEN | palette.look_of(selection.front[0].grade.material_class)))
     if len(selection.front) > 1:
         looks.append(("no other beats it", canvas.DOTS | _FRONT | {"color": "white"}))
     canvas.legend(figure, looks, "outside upper center", ncols=len(looks))
