@@ -10,7 +10,6 @@ from designer.analysis.analyse import analyse
 from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.diagnosis.result import Diagnosis
 from designer.effects.load import load_effects
-from designer.errors import InputError
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.io import config
 from designer.plugins.find import find_plugins
@@ -85,9 +84,6 @@ def diagnose(
     from designer.diagnosis.diagnose import diagnose_study
     from designer.measured.read import read_measured
 
-    if study.measurements is None:
-        raise InputError([study.source.fault("measurements", "is missing", "a table to compare")])
-    if data is not None:
+    if data is not None and study.measurements is not None:
         study = replace(study, measurements=replace(study.measurements, file=Path(data)))
-    assert study.measurements is not None
-    return diagnose_study(study, study.measurements, read_measured(study), progress)
+    return diagnose_study(study, read_measured(study), progress)

@@ -244,14 +244,10 @@ def diagnose(
     from designer.measured.read import read_measured
 
     study, plugins = study_of(config, no_plugins)
-    measurements = study.measurements
-    if measurements is None:
-        raise InputError([study.source.fault("measurements", "is missing", "a table to compare")])
-    if data is not None:
+    if data is not None and study.measurements is not None:
         if not data.is_file():
             raise InputError.at("--data", f"there is no file {data}", "a CSV file")
-        measurements = replace(measurements, file=data)
-        study = replace(study, measurements=measurements)
+        study = replace(study, measurements=replace(study.measurements, file=data))
     measured = read_measured(study)
     catalogue = None if checks else catalogue_of(study, plugins)
     announce_compiling()
@@ -267,11 +263,11 @@ def diagnose(
     with output_folder(folder) as building, ProgressBars(doing) as bars:
         result: Check | Diagnosis
         if catalogue is None:
-            result = check(study, measurements, measured, bars)
+            result = check(study, measured, bars)
             bars("report")
             write_check(result, building, template)
         else:
-            result = diagnose_study(study, measurements, measured, bars)
+            result = diagnose_study(study, measured, bars)
             bars("the design with and without")
             result = with_design(result, catalogue.grades)
             bars("report")

@@ -28,7 +28,6 @@ from designer.diagnosis.structure import Structure
 from designer.documents.plain import json_text, record
 from designer.effects.effect import Setting
 from designer.model.measured_data import Measured, Noise
-from designer.model.measurements import Measurements
 from designer.study import Study
 
 CARRIED = "as estimated when diagnosed"
@@ -176,10 +175,7 @@ class Check:
 
 
 def check(
-    study: Study,
-    measurements: Measurements,
-    measured: Measured,
-    progress: Callable[[str], None] = lambda _: None,
+    study: Study, measured: Measured, progress: Callable[[str], None] = lambda _: None
 ) -> Check:
     """Compare the data with the model as declared; only the baseline's unknowns are ever fitted.
 
@@ -193,15 +189,12 @@ def check(
     from threadpoolctl import threadpool_limits
 
     with threadpool_limits(1, user_api="blas"):  # as in a diagnosis
-        return _check(study, measurements, measured, progress)
+        return _check(study, measured, progress)
 
 
-def _check(
-    study: Study,
-    measurements: Measurements,
-    measured: Measured,
-    progress: Callable[[str], None],
-) -> Check:
+def _check(study: Study, measured: Measured, progress: Callable[[str], None]) -> Check:
+    measurements = study.measurements
+    assert measurements is not None
     case = case_of(study, replace(measurements, unknown=()), measured)
     measured = case.measured  # with poses, where they are estimated
     bare = case_of(replace(study, effects=()), measurements, measured)

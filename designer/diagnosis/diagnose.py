@@ -30,7 +30,6 @@ from designer.diagnosis.structure import covariates_of, smooth_correction, where
 from designer.effects.effect import Effect
 from designer.errors import EffectError
 from designer.model.measured_data import Measured
-from designer.model.measurements import Measurements
 from designer.progress import Pace
 from designer.study import Study
 
@@ -39,14 +38,12 @@ _UNKNOWN = 10.0
 
 
 def diagnose_study(
-    study: Study,
-    measurements: Measurements,
-    measured: Measured,
-    progress: Callable[[str], None] = lambda _: None,
+    study: Study, measured: Measured, progress: Callable[[str], None] = lambda _: None
 ) -> Diagnosis:
     """Diagnose; an effect of a plugin that fails at work is left out, and all is done again.
 
-    The study of the answer says in ``known_effects.problems`` what was left out.
+    The study has measurements; that of the answer says in ``known_effects.problems`` what was left
+    out.
 
     Raises
     ------
@@ -55,6 +52,8 @@ def diagnose_study(
     InputError
         See `diagnose`.
     """
+    measurements = study.measurements
+    assert measurements is not None
     asked_for = {effect.id for effect in study.effects} | set(measurements.unknown)
     while True:
         try:

@@ -154,8 +154,7 @@ def diagnosis_answer(question: Question, progress: Callable[[str], None]) -> Dia
 
     study = question.study
     measured = read_measured(study)
-    assert study.measurements is not None  # else reading has refused
-    diagnosis = diagnose_study(study, study.measurements, measured, progress)
+    diagnosis = diagnose_study(study, measured, progress)
     answer = verdict(diagnosis)
     return DiagnosisAnswer(
         title=answer.title,

@@ -39,7 +39,7 @@ def declare(config: Path, effects: dict, **measurements: object) -> Path:
 
 def checked(config: Path) -> Check:
     study = read_study(config)
-    return check(study, study.measurements, read_measured(study))
+    return check(study, read_measured(study))
 
 
 def run(monkeypatch, *arguments: str) -> int:
@@ -90,7 +90,7 @@ def test_one_wild_reading_is_counted_and_named(config) -> None:
     tension = np.array(measured.tension_N)
     tension[7, 1] += 50.0 * YARD3.noise_N
     wild = replace(measured, tension_N=frozen_array(tension))
-    clean, spoilt = (check(study, study.measurements, m) for m in (measured, wild))
+    clean, spoilt = (check(study, m) for m in (measured, wild))
     assert spoilt.declared.tension_N.rms.value > 3.0 * clean.declared.tension_N.rms.value
     assert spoilt.declared.tension_N.median < 1.1 * clean.declared.tension_N.median
     assert [(one.row, one.channel) for one in spoilt.outliers] == [(8, "tension 2")]

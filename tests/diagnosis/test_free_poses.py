@@ -140,11 +140,11 @@ def test_a_diagnosed_model_is_checked_without_poses(tmp_path) -> None:
     config = written(make(YARD3, truth, rows=40, seed=3307), tmp_path)
     study = read_study(config)
     measured = read_measured(study)
-    bare = check(study, study.measurements, measured)
+    bare = check(study, measured)
     declared = yaml.safe_load(config.read_text(encoding="utf-8")) | {"effects": truth}
     config.write_text(yaml.safe_dump(declared), encoding="utf-8")
     study = read_study(config)
-    helped = check(study, study.measurements, measured)
+    helped = check(study, measured)
     assert helped.is_positive
     assert helped.declared.tension_N.rms.value < 0.5 * bare.declared.tension_N.rms.value
     assert json.loads(helped.to_json())["rows"]["poses"] == "estimated"

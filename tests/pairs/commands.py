@@ -173,7 +173,7 @@ def diagnose(text: Mapping[str, Any], analysis: Analysis, folder: Path) -> Itera
     path.write_text(yaml.safe_dump(measured, sort_keys=False), encoding="utf-8")
     study = designer.read_study(path, with_plugins=False)
     assert study.measurements is not None
-    found = check(study, study.measurements, read_measured(study)).declared
+    found = check(study, read_measured(study)).declared
     if found.n_not_held or found.length_m is None or found.tension_N is None:
         yield f"diagnose: {found.n_not_held} of {len(rows)} rows are not held"
         return

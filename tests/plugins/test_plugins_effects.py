@@ -116,7 +116,7 @@ def test_the_diagnosis_finds_it_and_the_config_keeps_it(site, tmp_path) -> None:
     few = KnownEffects(tuple(one for one in known().effects if one.id in rivals))
     study = read_study(twin(tmp_path, 2.0), few)
     assert study.measurements is not None
-    found = diagnose_study(study, study.measurements, read_measured(study))
+    found = diagnose_study(study, read_measured(study))
     (finding,) = found.findings
     assert finding.effect.id == "load_cell_drift"
     estimate = finding.parameters["drift_N_per_K"]
@@ -190,7 +190,7 @@ def test_its_unknown_is_fitted_where_nothing_is_declared(site, tmp_path) -> None
     path.write_text(text.replace("measured.csv", "measured.csv\n  unknown: [load_cell_drift]"))
     study = read_study(path, known())
     assert study.measurements is not None
-    told = check(study, study.measurements, read_measured(study))
+    told = check(study, read_measured(study))
     assert told.fitted is not None
     assert told.fitted.tension_N is not None and told.without.tension_N is not None
     assert told.fitted.tension_N.rms.value < 0.5 * told.without.tension_N.rms.value
@@ -338,7 +338,7 @@ def test_a_law_that_fails_at_work_is_left_out_of_the_diagnosis(site, tmp_path, l
     study = read_study(twin(tmp_path, 0.0), known())
     assert study.known_effects.problems == ()
     assert study.measurements is not None
-    found = diagnose_study(study, study.measurements, read_measured(study))
+    found = diagnose_study(study, read_measured(study))
     assert found.findings == ()
     (problem,) = found.to_dict()["left_out"]
     start = "plugin acme-broken (acme-broken 1.2): effect 'load_cell_drift' fails at work: "
@@ -403,7 +403,7 @@ def test_readings_reach_a_plugin_as_arrays_that_it_cannot_spoil(site, tmp_path) 
     measured = read_measured(study)
     before = np.array(measured.temperature_C)
     assert study.measurements is not None
-    found = diagnose_study(study, study.measurements, measured)
+    found = diagnose_study(study, measured)
     assert np.array_equal(measured.temperature_C, before)
     assert "read-only" in found.study.known_effects.problems[0]
 
