@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import numbers
 import os
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -32,17 +31,8 @@ class Misfit:
     problem: str
 
 
-def to_plain(items: Iterable[object]) -> list[dict[str, Any]]:
-    """Return grades and paths as what JSON holds; of anything else why it is none of them."""
-    return [_item(item) for item in items]
-
-
-def from_plain(items: Iterable[dict[str, Any]]) -> list[Path | Grade | Misfit]:
-    """Return the grades and paths that `to_plain` was given."""
-    return [_taken(item) for item in items]
-
-
-def _item(item: object) -> dict[str, Any]:
+def to_plain(item: object) -> dict[str, Any]:
+    """Return a grade or a path as what JSON holds; of anything else why it is none of them."""
     try:
         if isinstance(item, str | os.PathLike):
             return {_PATH: os.fsdecode(item)}
@@ -71,7 +61,8 @@ def _plain(value: Any) -> Any:
     return {_KIND: kind, **{name: _plain(getattr(value, name)) for name in names}}
 
 
-def _taken(item: dict[str, Any]) -> Path | Grade | Misfit:
+def from_plain(item: dict[str, Any]) -> Path | Grade | Misfit:
+    """Return the grade or path that `to_plain` was given."""
     if _PATH in item:
         return Path(item[_PATH])
     if _MISFIT in item:

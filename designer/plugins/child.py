@@ -41,7 +41,7 @@ def main(name: str, value: str, label: str, longest_wait_s: float) -> None:
         say(doing=(failure := f"fails in {hook}()"))
         answer = guard.attempt(partial(listed, function), label, failure, problems)
         if answer is not None:
-            items[hook] = plain[hook].to_plain(answer) if hook in plain else []
+            items[hook] = [*map(plain[hook].to_plain, answer)] if hook in plain else []
     say(items=items, problems=problems)
     os._exit(0)  # a thread of the plugin may still be at work
 

@@ -115,7 +115,8 @@ def ask(plugins: Plugins, hook: str) -> tuple[list[Offer], list[str]]:
 def _hook(request: PluginQuestion, hook: str, items: Sequence[object]) -> Callable[[], object]:
     """Return what gives a plugin's answer: from plain data, or by the plugin itself."""
     if hook in hookspecs.PLAIN:
-        return partial(import_module(hookspecs.PLAIN[hook]).from_plain, items)
+        plain = import_module(hookspecs.PLAIN[hook])
+        return lambda: [plain.from_plain(item) for item in items]
     return lambda: hooks_of(request.entry)[hook]()  # noqa: PLW0108  # loads the plugin when called
 
 

@@ -50,12 +50,9 @@ class Base:
         path = Path(document.name)
         return study_of(checked(document, effects), document, path, effects, plugins)
 
-    def catalogue(self) -> Catalogue:
-        """Return the grades that its studies choose from."""
-        return self._catalogue(self.study())
-
-    def _catalogue(self, study: Study) -> Catalogue:
-        return kept_catalogue(study.catalogues, _plugins(self.with_plugins)[0])
+    def catalogue(self, study: Study | None = None) -> Catalogue:
+        """Return the grades that its studies, or one of them, choose from."""
+        return kept_catalogue((study or self.study()).catalogues, _plugins(self.with_plugins)[0])
 
     def result(self, study: Study) -> Json:
         """Return as much of ``result.json`` as what is kept of it asks for."""
@@ -65,7 +62,7 @@ class Base:
         # A proof may take its whole budget for each of thousands of studies.
         if "proof" not in parts and study.workspace is not None:
             study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
-        return result_part(Analysis.begin(study, self._catalogue(study)), self.keep)
+        return result_part(Analysis.begin(study, self.catalogue(study)), self.keep)
 
 
 @cache

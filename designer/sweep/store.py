@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from designer import __version__
-from designer.errors import Fault, InputError, OutputError
+from designer.errors import InputError, OutputError
 from designer.io.output import explained
 from designer.sweep.plan import SweepPlan
 
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 _CHUNKS = 2000
 """About as many tasks: fewer would be lost with a kill, more would be files without end."""
 _LARGEST_CHUNK = 50
+_EXPECTED = "that of this sweep, or another -o"
 
 
 class Store:
@@ -88,10 +89,10 @@ def opened(path: Path, plan: SweepPlan) -> Iterator[Store]:
     try:
         digest = zarr.open_group(path, mode="r").attrs.get("digest")
     except Exception:  # whatever a folder or file may be that is none
-        raise InputError([_fault(path, "is no store of a sweep")]) from None
+        raise InputError.at(path, "is no store of a sweep", _EXPECTED) from None
     if digest != plan.digest:
         problem = "is the store of another sweep, study, catalogue or version"
-        raise InputError([_fault(path, problem)])
+        raise InputError.at(path, problem, _EXPECTED)
     with explained(path):
         lock = FileLock(path / ".lock")
         try:
@@ -104,10 +105,6 @@ def opened(path: Path, plan: SweepPlan) -> Iterator[Store]:
             ):  # of a run that was killed while it wrote them
                 unfinished.unlink(missing_ok=True)
             yield Store(zarr.open_group(path, mode="r+"), plan)
-
-
-def _fault(path: Path, problem: str) -> Fault:
-    return Fault(str(path), None, "", problem, "that of this sweep, or another -o")
 
 
 def _lay_out(path: Path, plan: SweepPlan) -> None:
