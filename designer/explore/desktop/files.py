@@ -26,6 +26,7 @@ from designer.resources import example_file, example_names
 _STUDIES = "Studies (*.yaml *.yml);;All files (*)"
 _ROBOTS = "Robots of CASPR and WireX (*.xml *.wcrfx);;All files (*)"
 _PLANS = "Plans (*.yaml *.yml);;All files (*)"
+_TITLE = "cdpr-designer"
 _STARTER = "fast"
 """The study that has a comment to every field; `designer init` starts with it as well."""
 _EXPORTS: dict[What, tuple[str, str, str]] = {
@@ -103,7 +104,7 @@ class Files(QObject):
         opened: list[Session] = []
         if not self.may_leave():
             return
-        if not self._succeeds(lambda: opened.append(self._session(path)), "cdpr-designer"):
+        if not self._succeeds(lambda: opened.append(self._session(path)), _TITLE):
             self.not_opened.emit()
             return
         if opened[0].file is not None:
@@ -194,7 +195,8 @@ class Files(QObject):
         button = QMessageBox.StandardButton
         is_or_are = "is" if len(unfinished) == 1 else "are"
         text = f"{fmt.capital(fmt.listing(unfinished))} {is_or_are} not finished. End it?"
-        answer = self._answer("unfinished", text, button.Yes | button.Cancel, button.Cancel)
+        buttons = button.Yes | button.Cancel
+        answer = QMessageBox.question(self._parent, _TITLE, text, buttons, button.Cancel)
         return answer == button.Yes
 
     def _may_drop_changes(self) -> bool:
@@ -205,23 +207,8 @@ class Files(QObject):
         button = QMessageBox.StandardButton
         text = f"The changes of “{session.name}” are not saved."
         buttons = button.Save | button.Discard | button.Cancel
-        answer = self._answer("unsaved", text, buttons, button.Save)
+        answer = QMessageBox.question(self._parent, _TITLE, text, buttons, button.Save)
         return self.save() if answer == button.Save else answer == button.Discard
-
-    def _answer(
-        self,
-        name: str,
-        text: str,
-        buttons: QMessageBox.StandardButton,
-        default: QMessageBox.StandardButton,
-    ) -> QMessageBox.StandardButton:
-        box = QMessageBox(self._parent)
-        box.setObjectName(name)
-        box.setIcon(QMessageBox.Icon.Question)
-        box.setText(text)
-        box.setStandardButtons(buttons)
-        box.setDefaultButton(default)
-        return QMessageBox.StandardButton(box.exec())
 
     def look_at_disk(self) -> None:
         """Say where the file was changed by another program, or is gone."""

@@ -6,7 +6,8 @@ frame of the scene.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
@@ -15,11 +16,14 @@ from PySide6.QtWidgets import QFormLayout, QFrame, QLabel, QVBoxLayout, QWidget
 
 from designer.arrays import FloatArray
 from designer.explore.desktop import theme
-from designer.explore.desktop.painting import Key
+from designer.explore.desktop.painting import Key, Painting
 from designer.explore.desktop.widgets import fill, label
 from designer.report import format as fmt
 from designer.report.figures.colours import Steps
 from designer.report.figures.view import View
+
+if TYPE_CHECKING:
+    from designer.explore.map import MapAnswer
 
 HANDLE_PX = 13.0
 ARROW_PX = 34.0
@@ -136,6 +140,7 @@ class Legend(QFrame):
         self.setObjectName("legend")
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.setFixedWidth(_WIDTH_PX)
+        self.hide()
         self.steps: Steps | None = None
         self._meanings: tuple[str, ...] = ()
         self._title, self._note = label("", "heading"), label("", "muted")
@@ -151,31 +156,22 @@ class Legend(QFrame):
     def texts(self) -> list[str]:
         """All that is written, from the top."""
         labels = [] if self.steps is None else [fmt.trimmed(float(t), 6) for t in self.steps.ticks]
-        notes = filter(None, [self._note.text()])
-        return [self._title.text(), *notes, *labels[::-1], *self._meanings]
+        return [self._title.text(), self._note.text(), *labels[::-1], *self._meanings]
 
-    def show_meaning(
-        self,
-        title: str,
-        steps: Steps | None,
-        keys: Sequence[Key],
-        note: str = "",
-        *,
-        is_old: bool = False,
-    ) -> None:
-        """Show the title with its unit, a note, a scale if there is one, and other colours."""
-        self.steps, self._meanings = steps, tuple(key.meaning for key in keys)
-        self._title.setText(title)
-        self._note.setText(note)
-        self._note.setVisible(bool(note))
-        self._bar.show_steps(steps, is_old)
+    def show_painting(self, painting: Painting, answer: MapAnswer) -> None:
+        """Show what colours mean: quantity, cables, scale if there is one, and other colours."""
+        keys = painting.keys(answer)
+        self.steps, self._meanings = painting.steps, tuple(key.meaning for key in keys)
+        self._title.setText(painting.title)
+        self._note.setText(painting.note(answer))
+        self._bar.show_steps(painting.steps, painting.is_old)
         while self._keys.rowCount():
             self._keys.removeRow(0)
         for key in keys:
             meaning = label(key.meaning)
             meaning.setWordWrap(True)
-            self._keys.addRow(_swatch(key, is_old), meaning)
-        self.setVisible(bool(title))
+            self._keys.addRow(_swatch(key, painting.is_old), meaning)
+        self.show()
         self.resize(_WIDTH_PX, self.heightForWidth(_WIDTH_PX))
 
 

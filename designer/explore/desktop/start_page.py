@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QPixmap, QShowEvent
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QIcon, QShowEvent
 from PySide6.QtWidgets import (
     QGridLayout,
     QHBoxLayout,
@@ -119,15 +119,5 @@ def _picture(file: Path) -> QLabel:
     label = QLabel()
     label.setFixedHeight(_PICTURE_PX[1])
     label.setAlignment(Qt.AlignmentFlag.AlignCenter)
-    picture = QPixmap(str(file))
-    if not picture.isNull():
-        ratio = label.devicePixelRatioF()
-        fitted = picture.scaled(
-            round(_PICTURE_PX[0] * ratio),
-            round(_PICTURE_PX[1] * ratio),
-            Qt.AspectRatioMode.KeepAspectRatio,
-            Qt.TransformationMode.SmoothTransformation,
-        )
-        fitted.setDevicePixelRatio(ratio)
-        label.setPixmap(fitted)
+    label.setPixmap(QIcon(str(file)).pixmap(QSize(*_PICTURE_PX), label.devicePixelRatioF()))
     return label

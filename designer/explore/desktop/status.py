@@ -33,7 +33,7 @@ class StatusBar(QStatusBar):
 
 
 class LongWork(QWidget):
-    """One piece of long work at a time."""
+    """The long work that was begun last, of all that goes on."""
 
     def __init__(self, live: LiveSession) -> None:
         super().__init__()
@@ -74,6 +74,11 @@ class LongWork(QWidget):
             self._bar.setValue(steps)
 
     def _end(self) -> None:
-        if self._kind is not None and self._kind not in self._live.busy:
+        if self._kind is None or self._kind in self._live.busy:
+            return
+        others = [kind for kind in LONG if kind in self._live.busy]
+        if others:
+            self._begin(others[0])
+        else:
             self._kind = None
             self.hide()

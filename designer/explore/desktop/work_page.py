@@ -200,7 +200,7 @@ class WorkPage(QWidget):
             self.painting = None
             self.holds_scale.setChecked(False)
             self.scene.stage.put_map(None, None)
-            self.scene.colour_legend.show_meaning("", None, ())
+            self.scene.colour_legend.hide()
         self._show_map()
 
     def _show_age(self) -> None:
@@ -261,13 +261,7 @@ class WorkPage(QWidget):
         painting = Painting.over(answer, quantity, self._fixed_steps)
         self.painting = replace(painting, is_old=self._is_old)
         self.scene.stage.put_map(answer, self.painting)
-        self.scene.colour_legend.show_meaning(
-            self.painting.title,
-            self.painting.steps,
-            self.painting.keys(answer),
-            self.painting.note(answer),
-            is_old=self._is_old,
-        )
+        self.scene.colour_legend.show_painting(self.painting, answer)
         self.scene.place_legend()
         has_slice = "slice" in answer.grids
         self.slice.setVisible(has_slice)

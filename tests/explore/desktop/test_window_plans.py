@@ -11,6 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QLabel, QMenu, QTableView
 from window_driver import LEFT, Driver
 
+from designer.explore.requests import Long
 from designer.sweep.store import read_store
 
 OPTIMISATION = """study: yard.yaml
@@ -157,6 +158,19 @@ def test_faulty_plan_is_refused_in_a_line(
         assert expected in yard.window.messages.toPlainText()
     assert not store.exists()
     assert not list(tmp_path.glob("*-report"))
+
+
+def test_bar_goes_on_with_other_long_work(empty: Driver) -> None:
+    live, bar = empty.window.live, empty.window.status.long
+    kinds: tuple[Long, ...] = ("sweep", "optimise")
+    for number, kind in enumerate(kinds):
+        live._pending[kind] = number
+        live.begun.emit(kind)
+    for kind, shown in zip(reversed(kinds), ("the sweep", ""), strict=True):
+        del live._pending[kind]
+        live.busy_changed.emit()
+        assert bar.isVisible() == bool(shown)
+        assert not shown or shown == bar._task.text()
 
 
 def test_without_a_study_there_is_nothing_to_optimise(empty: Driver) -> None:
