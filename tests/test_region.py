@@ -10,6 +10,7 @@ from designer.arrays import frozen_array
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.rectangle import Rectangle
+from designer.model.region import ring
 from designer.model.sobol import sobol
 from designer.model.space import Orientations, Space
 
@@ -92,6 +93,14 @@ def test_what_a_region_hands_out_lies_in_it(region, sampling) -> None:
         assert region.contains(region.nearest(points)).all()
         assert region.nearest(points) == pytest.approx(points, abs=1e-9)
     assert (len(sampled) == 300) == region.is_discrete or sampling == "grid"
+
+
+def test_the_edges_of_a_ring_lead_from_corner_to_corner_and_back() -> None:
+    corners = np.random.default_rng(6).normal(size=(5, 3))
+    edges = ring(corners)
+    assert (edges[:, 0] == corners).all()
+    assert (edges[:-1, 1] == edges[1:, 0]).all()
+    assert (edges[-1, 1] == corners[0]).all()
 
 
 @pytest.mark.parametrize("at_m", [-1e3, 0.0, 1e3])

@@ -15,7 +15,7 @@ from designer.kernel.calling import CableFigures, Situation, plain, share_out, s
 from designer.kernel.cone import refuse_range
 from designer.kernel.least_pull import least_pulls
 from designer.kernel.redundant import solve_massless_range, solve_redundant_range
-from designer.kernel.search import search_range
+from designer.kernel.search import prove_range, search_range
 from designer.kernel.square import solve_range
 from designer.kernel.table import LANES
 from designer.model.robot import Robot
@@ -133,7 +133,11 @@ def solve_batch(
     potential = np.zeros(count)
     if (inverse_weight != 0.0).all():  # at infinite section nothing is chosen
         if is_thorough:
-            share_out_runs(search_range, _SEARCH_SHARE, solves)
+            if robot.has_one_branch:
+                share_out_runs(prove_range, _SHARE, solves)
+            is_open = out.verdict != answer.NO_FINITE_CABLE
+            open_runs = [run for run in solves if is_open[run[0] : run[1]].any()]
+            share_out_runs(search_range, _SEARCH_SHARE, open_runs)
         if rates_branches and not robot.has_one_branch:
             rated = [(*s, situation, figures, sizing, out, potential) for *s, figures, _ in runs]
             share_out_runs(rate_range, _SLOW_SHARE, rated)

@@ -33,6 +33,7 @@ from designer.arrays import FloatArray, IntArray, VerdictArray
 from designer.kernel.answer import NOT_CONVERGED, NOT_FOUND, OUTSIDE_HULL, RANK_DEFICIENT
 from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import kernel
+from designer.kernel.linear import copy
 from designer.kernel.pose import (
     LEAST,
     SIZE,
@@ -134,7 +135,7 @@ def refuse_range(
             if separation > 0.0:
                 out_verdict[at] = OUTSIDE_HULL
                 out_separation[at] = separation
-                out_wrench[at] = cone.rest
+                copy(cone.rest, out_wrench[at])
 
 
 @kernel
@@ -180,11 +181,11 @@ def _spans(cone: Cone, n: int) -> bool:
     for k in range(cone.rest.size):
         best = 0.0
         for i in range(n):
-            cone.rest[:] = cone.rays[i]
+            copy(cone.rays[i], cone.rest)
             size = _clear(cone.rest, cone.basis, k)
             if size > best:
                 best = size
-                cone.basis[k] = cone.rest
+                copy(cone.rest, cone.basis[k])
         if not best > _RANK:
             return False
         _normalise(cone.basis[k])
@@ -207,11 +208,9 @@ def _reach(cone: Cone, n_rays: int) -> bool:
     """Find the point of the first rays' cone that is nearest to the load; False if that fails."""
     rays, share, used = cone.rays, cone.share, cone.used
     share[:] = 0.0
+    copy(cone.load, cone.rest)
     count = 0
     for _ in range(_MOST_TURNS + n_rays):
-        count = _settle(cone, count)
-        if count < 0:
-            return False
         best, entering = _ENTERS, -1
         for j in range(n_rays):
             gain = _along(rays[j], cone.rest)
@@ -222,7 +221,9 @@ def _reach(cone: Cone, n_rays: int) -> bool:
         if count == cone.rest.size:
             return False
         used[count] = entering
-        count += 1
+        count = _settle(cone, count + 1)
+        if count < 0:
+            return False
     return False
 
 
@@ -258,7 +259,7 @@ def _project(cone: Cone, count: int) -> bool:
     """
     basis, triangle = cone.basis, cone.triangle
     for k in range(count):
-        basis[k] = cone.rays[cone.used[k]]
+        copy(cone.rays[cone.used[k]], basis[k])
         if not _clear(basis[k], basis, k) > _RANK:
             return False
         _normalise(basis[k])
@@ -271,7 +272,7 @@ def _project(cone: Cone, count: int) -> bool:
         for j in range(k + 1, count):
             total -= triangle[k, j] * cone.trial[cone.used[j]]
         cone.trial[cone.used[k]] = total / triangle[k, k]
-    cone.rest[:] = cone.load
+    copy(cone.load, cone.rest)
     _clear(cone.rest, basis, count)
     return True
 

@@ -11,6 +11,7 @@ from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import FORCE_X, FORCE_Z, LENGTH
 from designer.kernel.calling import Situation
 from designer.kernel.compiling import kernel
+from designer.kernel.linear import copy
 from designer.kernel.table import (
     L_0,
     L_P,
@@ -48,7 +49,10 @@ _LEAST_START = 0.01
 @kernel
 def lanes_of(indices: IntArray, first: int) -> IntArray:
     """Return the poses of a block: from `first`, the last one repeated where there are no more."""
-    return indices[np.minimum(np.arange(first, first + LANES), indices.size - 1)]
+    lane = np.empty(LANES, dtype=np.int64)
+    for j in range(LANES):
+        lane[j] = indices[min(first + j, indices.size - 1)]
+    return lane
 
 
 @kernel
@@ -91,7 +95,7 @@ def assemble(
         level, lift, is_level = LEVEL + rows[m], LIFT + rows[m], rows[m] in (0, 1, 5)
         rest = A[m, n]
         rest[:] = 0.0
-        A[m, n + 1] = poses[LOAD + rows[m]]
+        copy(poses[LOAD + rows[m]], A[m, n + 1])
         for i in range(n):
             row, w, slope = cables[i], weights[i], A[m, i]
             if is_level:  # nothing to lift: the same, but quicker

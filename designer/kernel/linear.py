@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 from designer.arrays import FloatArray
-from designer.kernel.compiling import kernel
+from designer.kernel.compiling import element, kernel
+
+
+@element
+def copy(source: FloatArray, target: FloatArray) -> None:
+    """Copy numbers (n,); to assign an array would compile messages about shapes, for seconds."""
+    for k in range(target.size):
+        target[k] = source[k]
 
 
 @kernel

@@ -122,11 +122,12 @@ def new_pose(figures: CableFigures, rows: IntArray) -> Pose:
     """Return the arrays of a pose, filled with what is the same for all poses."""
     cables = np.zeros((_ROWS, figures.kappa.size))
     scale = np.ones(3)
-    cables[KAPPA] = figures.kappa
-    cables[SHARE] = figures.weights
-    cables[STRENGTH] = figures.strength
-    cables[LEAST] = figures.least_tension / figures.weights
-    scale[FORCE] = np.max(figures.weights * figures.strength)
+    scale[FORCE] = 0.0
+    for i in range(figures.kappa.size):
+        weight, strength = figures.weights[i], figures.strength[i]
+        cables[KAPPA, i], cables[SHARE, i] = figures.kappa[i], weight
+        cables[STRENGTH, i], cables[LEAST, i] = strength, figures.least_tension / weight
+        scale[FORCE] = max(scale[FORCE], weight * strength)
     return Pose(cables, rows, np.zeros(6), np.zeros(6), scale, figures.least_pulls)
 
 

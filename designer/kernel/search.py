@@ -27,8 +27,9 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.kernel.answer import FORCE_X, LOAD_FACTOR, NO_FINITE_CABLE, SOLVED, WEIGHT, Answers
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import kernel
+from designer.kernel.compiling import element, kernel
 from designer.kernel.interior import START_OF_STRAIGHT, climb, new_scratch, pull_straight
+from designer.kernel.linear import copy, solve_small
 from designer.kernel.pose import (
     FORCE,
     KAPPA,
@@ -73,6 +74,37 @@ _MARGIN = 1e-3
 _ABOVE_LEAST = 1.1
 _SHORTER = 0.7
 _HALVINGS = 40
+
+
+@kernel
+def prove_range(
+    start: int,
+    stop: int,
+    situation: Situation,
+    figures: CableFigures,
+    inverse_weight: float,
+    out: Answers,
+) -> None:
+    """Tell of poses of a point mass whose straight cables are determinate that none holds them.
+
+    Of those that are to be sized: what `search_range` would say, compiled in a fifth of the time.
+    """
+    n = figures.kappa.size
+    pose = new_pose(figures, situation.rows)
+    c, system, pull = pose.cables, np.empty((n, n + 1)), np.empty(n)
+    for at in range(start, stop):
+        place(pose, situation, at)
+        for k in range(n):
+            row = pose.rows[k]
+            system[k, n] = pose.load[row]
+            for i in range(n):
+                system[k, i] = c[LEVEL + row, i] + c[LIFT + row, i] * c[D, i]
+        is_held = inverse_weight < 0.0 and solve_small(system, pull)
+        for i in range(n):
+            is_held = is_held and pull[i] > 0.0
+            c[STRAIGHT, i] = pull[i] * c[SHARE, i] * c[CHORD, i]
+        if is_held and out.verdict[at] != SOLVED and _point_bounds(pose):
+            out.verdict[at] = NO_FINITE_CABLE
 
 
 @kernel
@@ -122,14 +154,23 @@ def search_range(
                 is_proved = _bounds(pose, scratch.value)
             if not is_optimal or not (s > best + _BETTER * abs(s) or best == -np.inf):
                 continue
-            keep_cables[:], keep_pose[:] = out.cables[at], out.poses[at]
+            _copy_answer(out.cables[at], out.poses[at], keep_cables, keep_pose)
             before = out.verdict[at]
             c = (ask.c_0 + s * ask.c_s) / to_scaled
             if store(out, at, pose, c, gap, straight_c, sizing) == SOLVED:
                 best = s
             else:
-                out.cables[at], out.poses[at] = keep_cables, keep_pose
+                _copy_answer(keep_cables, keep_pose, out.cables[at], out.poses[at])
                 out.verdict[at] = before
+
+
+@element
+def _copy_answer(
+    cables: FloatArray, pose: FloatArray, to_cables: FloatArray, to_pose: FloatArray
+) -> None:
+    for i in range(cables.shape[0]):
+        copy(cables[i], to_cables[i])
+    copy(pose, to_pose)
 
 
 @kernel

@@ -29,7 +29,7 @@ from designer.kernel.lanes import (
     linearise,
     place,
 )
-from designer.kernel.linear import solve_lanes
+from designer.kernel.linear import copy, solve_lanes
 from designer.kernel.square import check, evaluate
 from designer.kernel.table import CHORD, LANE_ROWS, LANES, D, L, P, V
 
@@ -44,9 +44,10 @@ def sweep_sizes(
     first: int,
     last: int,
     situation: Situation,
-    kappa: FloatArray,
     inverse_weight: FloatArray,
+    kappa: FloatArray,
     strength: FloatArray,
+    ones: FloatArray,
     cells: IntArray,
     leaves_out_hanging: bool,
     meets: Meets,
@@ -55,8 +56,13 @@ def sweep_sizes(
 
     Parameters
     ----------
-    kappa, inverse_weight, strength : array (n_sizes,)
-        Weight over axial stiffness [1/m], 1 / w [m/N], allowable tension over weight [m].
+    inverse_weight : array (n_sizes,)
+        1 / w [m/N].
+    kappa, strength : array (n_sizes, n_cables)
+        Weight over axial stiffness [1/m] and allowable tension over weight [m], the same on every
+        winch.
+    ones : array (n_cables,)
+        The weights of the cables relative to each other.
     cells : array (n_poses,)
         Part of the region that each pose lies in.
     leaves_out_hanging : bool
@@ -71,27 +77,29 @@ def sweep_sizes(
     A = np.empty((n + 1, n + 2, LANES))
     poses = np.empty((POSE_ROWS, LANES))
     guess = np.empty((n, 2, LANES))
-    ones, every = np.ones(n), np.arange(count)
+    every = np.arange(count)
     for start in range(0, count, LANES):
         lane = lanes_of(every, start)
         place(cables, poses, situation, lane)
         assemble(A, cables, poses, ones, rows)
         solve_lanes(A, n, n + 2)
-        guess[:] = A[:n, n:]
+        for i in range(n):
+            for right in range(2):
+                copy(A[i, n + right], guess[i, right])
         poses[C] = inverse_weight[first]
         first_guess(cables, A, poses, ones)
         for size in range(first, last):
             poses[C] = inverse_weight[size]
             for _ in range(_ITERATIONS):  # Newton, from the state that the poses are in
-                linearise(cables, kappa[size] * ones)
+                linearise(cables, kappa[size])
                 assemble(A, cables, poses, ones, rows)
                 solve_lanes(A, n, n + 2)
                 poses[STEP] = 0.0
                 advance(cables, A, poses)
                 if np.max(poses[STEP]) < _SMALLEST_STEP:
                     break
-            evaluate(cables, kappa[size] * ones)
-            check(poses, cables, ones, strength[size] * ones, rows)
+            evaluate(cables, kappa[size])
+            check(poses, cables, ones, strength[size], rows)
             for j in range(min(LANES, count - start)):
                 at, cell, overload = lane[j], cells[lane[j]], poses[OVERLOAD, j]
                 # Negated, so that NaN counts as failed.

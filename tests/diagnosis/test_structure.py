@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
+import statistics
+
 import numpy as np
 import pytest
 
-from designer.diagnosis.structure import find_structure
+from designer.diagnosis.structure import channels_of, find_structure
 
 ROWS, CHANNELS = 80, 6
 
@@ -47,6 +50,28 @@ def test_a_covariate_of_two_values_has_no_parabola() -> None:
     found = find_structure(residual, covariates, settled=True)
     assert found.carriers[0].name == "side"
     assert 0.0 < found.carriers[0].fraction_of_variance <= 1.0
+
+
+def test_channels_by_hand() -> None:
+    """Median off, clipped at four spreads, gaps at zero, mean off; then the mean over cables."""
+    rng = np.random.default_rng(5)
+    residual = rng.normal([0.0, 30.0, -5.0, 0.0], [0.1, 20.0, 3.0, 1.0], (60, 4))
+    residual[rng.random(residual.shape) < 0.2] = np.nan
+    residual[7], residual[8] = 400.0, -9.0
+    residual[:, 3] = np.nan  # a load cell that was never read
+    expected = []
+    for kind in (residual[:, :2], residual[:, 2:3]):
+        of_kind = []
+        for column in kind.T:
+            read = [value for value in column if not np.isnan(value)]
+            middle = statistics.median(read)
+            spread = statistics.median(abs(value - middle) for value in read)
+            most = 4.0 * max(1.4826 * spread, 1.0)
+            filled = [0.0 if np.isnan(v) else min(max(v - middle, -most), most) for v in column]
+            of_kind.append([value - sum(filled) / 60.0 for value in filled])
+        both = [sum(values) / math.sqrt(2.0) for values in zip(*of_kind, strict=True)]
+        expected += [*of_kind, both]
+    assert channels_of(residual) == pytest.approx(np.transpose(expected), rel=1e-4, abs=1e-4)
 
 
 def test_gaps_and_outliers_do_not_hide_it() -> None:

@@ -160,6 +160,7 @@ def test_a_study_without_cases_has_the_static_one() -> None:
     assert bare.chosen is not None
     assert one.chosen is not None
     assert bare.chosen.name == one.chosen.name
+    assert {c.name for c in bare.candidates if c.requirements} == {bare.chosen.name}
     assert bare.chosen.verification.utilisation == one.chosen.verification.utilisation
     assert [c.reason for c in bare.candidates if c.verified] == [
         c.reason for c in one.candidates if c.verified

@@ -30,7 +30,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.kernel.compiling import exact, exact_kernel
-from designer.kernel.linear import solve_small
+from designer.kernel.linear import copy, solve_small
 from designer.proof.enclosure.cable import enclose
 from designer.proof.enclosure.interval import (
     Interval,
@@ -216,7 +216,8 @@ def _prepare(scene: Scene, boxes: Boxes, at: int, work: Work) -> bool:
     n, k = work.P.shape
     m, rows = scene.rows.size, scene.rows
     work.U[:] = 0.0
-    work.P[:] = boxes.follow[at]
+    for i in range(n):
+        copy(boxes.follow[at, i], work.P[i])
     _place(scene, boxes, at, 0.0, work)
     if not _bend(scene, boxes, at, 0.0, work):
         return False

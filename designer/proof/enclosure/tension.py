@@ -6,6 +6,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.kernel.compiling import exact
+from designer.kernel.linear import copy
 from designer.proof.enclosure.interval import (
     Interval,
     absolute,
@@ -177,7 +178,7 @@ def bound_tension(scene: Scene, boxes: Boxes, at: int, work: Work, out: FloatArr
             out[CABLE] = i
         if work.start_t[i] + at_corner > estimate:
             estimate = work.start_t[i] + at_corner
-            out[TOLD], out[TOLD + 1] = boxes.corners[at, worst_corner]
+            copy(boxes.corners[at, worst_corner], out[TOLD : TOLD + 2])
             for d in range(2, k):
                 out[TOLD + d] = boxes.half[at, d] if work.tilt[d] > 0.0 else -boxes.half[at, d]
         if scene.least > 0.0:
