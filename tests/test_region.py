@@ -12,7 +12,7 @@ from designer.model.prism import Prism
 from designer.model.rectangle import Rectangle
 from designer.model.region import ring
 from designer.model.sobol import sobol
-from designer.model.space import Orientations, Space
+from designer.model.space import Orientations, Space, named_pose
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 
@@ -161,3 +161,13 @@ def test_the_frame_of_a_rectangle_spans_its_corners() -> None:
     frame = rectangle.frame()
     corners = frame.origin_m + np.stack([frame.low[0], frame.high[0]]) @ frame.axes.T
     assert corners == pytest.approx(np.array([[1.0, 2.0, -1.0], [4.0, 6.0, 2.0]]))
+
+
+def test_a_pose_is_named_with_its_orientation_where_it_is_turned_about_any_axis() -> None:
+    position = [1.0, 2.0, 3.0]
+    for turn in ([0.1, 0.0, 0.0], [0.0, -0.1, 0.0], [0.0, 0.0, 0.1], [0.1, 0.2, 0.3]):
+        (_, turned) = named_pose(np.array([*position, *turn])).values()
+        assert turned.tolist() == turn
+    for place in (np.array([*position, 0.0, 0.0, 0.0]), np.array(position)):
+        (alone,) = named_pose(place).values()
+        assert alone.tolist() == position

@@ -9,10 +9,14 @@ import pytest
 from ropes import rope
 
 from designer.grades.grade import Grade
+from designer.model.load_case import STATIC, LoadCase, Wind
+from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.model.workspace import Workspace
+from designer.selection.assignment import for_all
 from designer.selection.result import GradeOutcome
+from designer.selection.samples import over_samples
 from designer.selection.select import select
 from designer.selection.verify import verify
 from designer.sizing.newton import size_poses
@@ -65,6 +69,32 @@ def test_verification_holds_at_the_worst_pose_found_by_other_means(fast_robot, w
     tension = solve_sagging(fast_robot, Poses.at(others), cable).largest_tension_N
     assert np.nanmax(tension) <= result.max_tension_N
     assert result.longest_m.max() < 600
+
+
+def test_one_rope_is_a_group_of_all_cables(fast_robot, workspace) -> None:
+    best = try_grade(fast_robot, workspace, rope("a", [24.0, 30.0]), 2.0).best
+    assert best is not None
+    assigned = for_all(best)
+    assert [group.cables for group in assigned.groups] == [(1, 2, 3)]
+    assert assigned.max_tension_N == pytest.approx(best.verification.max_tension_N)
+    assert not for_all(None).groups
+
+
+def test_poses_over_the_limit_are_counted_one_by_one_as_by_the_compiled_sweep(
+    fast_robot, workspace
+) -> None:
+    """In a breath of wind, which has poses told by the true vertical, and in none."""
+    grade = rope("a", [14.0])
+    cable = grade.cable(grade.sizes[0], 2.0)
+    points = workspace.region.inside_m(np.random.default_rng(8), 500)
+    few = replace(workspace, region=PointList(points), hangs_below="exclude")
+    breath = LoadCase("breath", wind=Wind(1e-4, 1.2, direction=np.array([1.0, 0.0, 0.0])))
+    counts = []
+    for case in (STATIC, breath):
+        (sampled,) = over_samples([next(iter(case.on(fast_robot, cable)))], few)
+        counts.append((sampled.counted, sampled.overloaded, sampled.not_held))
+    assert counts[0] == counts[1]
+    assert 0 < counts[0][1] < counts[0][0]
 
 
 def test_a_weak_size_is_passed_over(fast_robot, workspace) -> None:

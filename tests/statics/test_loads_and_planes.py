@@ -205,3 +205,14 @@ def test_a_least_tension_that_the_cable_cannot_carry() -> None:
     used = solve_sagging(heavy, pose, cable)
     assert used.is_solved[0]
     assert used.largest_tension_N[0] > cable.allowable_tension_N
+
+
+@pytest.mark.parametrize("far_m", [0.0, 30.0, 1e4])
+def test_the_plane_of_a_planar_robot_is_found_wherever_it_stands(far_m: float) -> None:
+    """Across the plane the exit points do not differ, however far from the origin they are."""
+    for heading in np.radians([0.0, 25.0, 90.0, 160.0]):
+        along = np.array([np.cos(heading), np.sin(heading), 0.0])
+        across = np.array([-np.sin(heading), np.cos(heading), 0.0])
+        exits = [far_m * across + x * along + [0.0, 0.0, 5.0] for x in (0.0, 4.0, 9.0)]
+        robot = Robot(frozen_array(exits), Platform(500.0), is_planar=True)
+        assert np.ptp(robot.level @ robot.exit_points_m.T, axis=1)[1] < 1e-9 * max(far_m, 1.0)
