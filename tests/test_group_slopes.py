@@ -116,8 +116,7 @@ def test_slopes_of_groups_are_those_of_differences(
 
 def test_report_shows_them(found: tuple[Sensitivities, ...]) -> None:
     analysis: Any = SimpleNamespace(carries=None, group_slopes=found)
-    source: Any = SimpleNamespace(analysis=analysis)
-    page = rendered(Section("carries", context=carries.sensitivities(source) or {})).body
+    page = rendered(Section("carries", context=carries.sensitivities(analysis) or {})).body
     cells = re.findall(r"<td[^>]*>([^<]*)</td>", page)
     now = cells.index("Utilisation now")
     assert cells[now + 2].startswith(f"{100 * found[0].utilisation:.1f}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from twins.dataset import make, size_for
 from twins.robots import FAST3, YARD3, TwinRobot
@@ -25,6 +26,22 @@ def diagnosed(robot: TwinRobot, effect: str, seed: int, folder, unknown=()) -> D
     measurements = replace(study.measurements, unknown=unknown)
     study = replace(study, measurements=measurements)
     return diagnose(case_of(study, measurements, read_measured(study)))
+
+
+def test_readings_with_gaps_show_an_effect_as_whole_ones_do(tmp_path) -> None:
+    """One length that was not read is no reason to try nothing that lengths show."""
+    true = {"drum_scale": YARD3.draw("drum_scale", size_for(YARD3, "drum_scale", 10.0, 1), 1)}
+    make(YARD3, true, rows=ROWS, seed=1).write(tmp_path, ["length"])
+    study = read_study(tmp_path / "config.yaml")
+    assert study.measurements is not None
+    measured = read_measured(study)
+    length_m = measured.length_m.copy()
+    length_m[3, 1] = np.nan
+    whole, gappy = (
+        case_of(study, study.measurements, each)
+        for each in (measured, replace(measured, length_m=length_m))
+    )
+    assert dict(gappy.skipped) == dict(whole.skipped)
 
 
 @pytest.mark.slow

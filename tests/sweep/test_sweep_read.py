@@ -32,6 +32,12 @@ def test_a_plan_knows_its_points_and_kinds(tmp_path: Path) -> None:
     assert study.pose.position_m.tolist() == [10.0, 6.0, 5.0]
 
 
+def test_a_range_of_one_value_is_a_grid_of_one_point(tmp_path: Path) -> None:
+    narrow = SWEEP.replace("to: 200 kg, count: 3", "to: 100 kg, count: 1")
+    plan, _ = read_sweep(written(tmp_path, narrow), with_plugins=False)
+    assert plan.n_points == 3
+
+
 def test_the_digest_is_that_of_what_counts(tmp_path: Path) -> None:
     digests = [
         read_sweep(written(tmp_path, sweep), with_plugins=False)[0].digest
