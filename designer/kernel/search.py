@@ -99,11 +99,13 @@ def prove_range(
             system[k, n] = pose.load[row]
             for i in range(n):
                 system[k, i] = c[LEVEL + row, i] + c[LIFT + row, i] * c[D, i]
-        is_held = inverse_weight < 0.0 and solve_small(system, pull)
+        if not (inverse_weight < 0.0 and out.verdict[at] != SOLVED and solve_small(system, pull)):
+            continue
+        least, largest = np.inf, -np.inf
         for i in range(n):
-            is_held = is_held and pull[i] > 0.0
+            least, largest = min(least, pull[i]), max(largest, pull[i])
             c[STRAIGHT, i] = pull[i] * c[SHARE, i] * c[CHORD, i]
-        if is_held and out.verdict[at] != SOLVED and _point_bounds(pose):
+        if least >= -_SURELY * largest and _point_bounds(pose):
             out.verdict[at] = NO_FINITE_CABLE
 
 
