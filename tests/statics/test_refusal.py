@@ -12,10 +12,11 @@ from scipy.optimize import nnls
 
 from designer.arrays import frozen_array
 from designer.kernel.batch import refuse_batch
+from designer.model.cable import Material
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
 from designer.physics import catenary
-from designer.sizing.newton import size_poses
+from designer.sizing.newton import limit_ratio, size_poses
 from designer.statics.geometry import (
     cable_geometry,
     load_wrench_N,
@@ -184,3 +185,24 @@ def test_vertical_cables_are_not_rank_deficient() -> None:
     assert refuse(SEVEN, Poses.at([[0.0, 0.0, 0.0]]))[0] != [Verdict.RANK_DEFICIENT]
     fixed = solve_sagging(robot, Poses.at([[0.0, 0.0, 2.0]]), steel().cable(0.01))
     assert fixed.verdict[0] != Verdict.RANK_DEFICIENT
+
+
+def test_near_the_edge_of_the_hull_no_finite_cable_is_proved(fast_robot: Robot) -> None:
+    """On the edge, and inside of it as far as stress at infinite section is above what is allowed.
+
+    At some scale of the distance to the edge both happen.
+    """
+    rng = np.random.default_rng(20261125)
+    material = Material(7800.0, 200e9, 180e6)
+    corners = fast_robot.exit_points_m
+    share, drop_m = rng.uniform(0.1, 0.9, (3, 60, 1)), rng.uniform(20.0, 120.0, (3, 60))
+    edges = corners[:, None] + share * (np.roll(corners, -1, axis=0) - corners)[:, None]
+    inward = corners.mean(axis=0) - edges
+    for depth in (0.0, 1e-12, 1e-6, 1e-3, 0.03, 0.1):
+        places = (edges + depth * inward).reshape(-1, 3) - [0.0, 0.0, 1.0] * drop_m.reshape(-1, 1)
+        verdict = size_poses(fast_robot, Poses.at(places), material).statics.verdict
+        if depth > 1e-6:
+            over = limit_ratio(fast_robot, Poses.at(places), material) > 1.0
+            assert ((verdict == Verdict.NO_FINITE_CABLE) == over).all()
+        else:
+            assert (verdict == Verdict.NO_FINITE_CABLE).all()
