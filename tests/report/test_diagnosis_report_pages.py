@@ -18,7 +18,15 @@ from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.problem import Predictor
 from designer.diagnosis.propose import Proposal
-from designer.diagnosis.result import Diagnosis, Estimate, Finding, RopeChoice, Use, Withdrawn
+from designer.diagnosis.result import (
+    MOST_SCATTER,
+    Diagnosis,
+    Estimate,
+    Finding,
+    RopeChoice,
+    Use,
+    Withdrawn,
+)
 from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED
@@ -117,6 +125,14 @@ def test_a_found_effect_is_named_with_its_value(diagnoses: dict[str, Diagnosis])
     before, after = (float(page.errors.groups[0].rows[0].cells[k]) for k in (1, 3))
     assert before > 50.0
     assert after < 1.3
+
+
+def test_scatter_is_told_where_it_is_more_than_the_noise(
+    diagnoses: dict[str, Diagnosis], pages: Callable[[str], str]
+) -> None:
+    for kind, diagnosis in diagnoses.items():
+        is_larger = max(diagnosis.scatter.values()) > MOST_SCATTER
+        assert ("what is left is up to" in visible(pages(kind))) == is_larger, kind
 
 
 def test_effects_are_shown_as_written(diagnoses: dict[str, Diagnosis]) -> None:

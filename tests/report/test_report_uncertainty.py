@@ -17,7 +17,7 @@ from designer.model.uncertainty import Normal, Uncertainty, Uniform
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
 from designer.report.document import Section
-from designer.report.phrases import probability
+from designer.report.phrases import in_a_sentence, probability
 
 SPREADS: Any = {"payload": Normal(0.05), "modulus": Uniform(-0.15, 0.15)}
 SHARES = (
@@ -156,3 +156,9 @@ def test_nothing_where_all_is_certain() -> None:
 def test_only_all_is_a_hundred_percent(enough: int, text: str) -> None:
     used = np.where(np.arange(4096) < enough, 0.5, 1.5)
     assert probability(size_of("a", used)) == text
+
+
+def test_one_input_alone_carries_nothing_that_is_worth_a_word() -> None:
+    used = np.linspace(0.7, 0.9, 64)
+    assert "payload carries" in in_a_sentence(found_of(used)).replace("\u00a0", " ")
+    assert "carries" not in in_a_sentence(found_of(used, shares=SHARES[:1]))
