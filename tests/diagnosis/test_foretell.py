@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.stats
 from scipy.spatial.transform import Rotation
 from twins.dataset import make
 from twins.robots import HALL6, HALL8, YARD3
 
 from designer.diagnosis.case import case_of
-from designer.diagnosis.errors_of import _turn_rad, foretell, with_sound_lengths
+from designer.diagnosis.errors_of import _turn_rad, bootstrap, foretell, with_sound_lengths
 from designer.diagnosis.problem import Predictor, Problem
 from designer.diagnosis.statistics import heldout_rows
 from designer.effects.effect import Setting
@@ -82,3 +83,23 @@ def test_the_turn_between_poses_is_told_at_any_angle(turn_deg: float) -> None:
     turned = target * Rotation.from_rotvec(turn_deg * axis, degrees=True)
     poses, targets = (Poses(np.zeros((1, 3)), r.as_matrix()[None]) for r in (turned, target))
     assert np.degrees(_turn_rad(poses, targets)) == pytest.approx([turn_deg], rel=1e-7, abs=1e-9)
+
+
+def test_an_interval_is_the_one_of_scipy() -> None:
+    """Whole thirds of blocks drawn with replacement; both ends to a seventh of the half-width."""
+    rng = np.random.default_rng(3)
+    block = np.repeat(np.arange(12), 5)
+    unseen = rng.normal(size=(60, 3)) * rng.uniform(0.5, 2.0, (60, 1))
+    unseen[rng.random(unseen.shape) < 0.1] = np.nan
+    number = (np.arange(60) * 36) // 60  # rows of each third of a block
+
+    def rms_of(drawn: np.ndarray) -> float:
+        rows = np.concatenate([unseen[number == k] for k in drawn.astype(int)])
+        return float(np.sqrt(np.nansum(rows**2) / np.sum(np.isfinite(rows))))
+
+    theirs = scipy.stats.bootstrap(
+        (np.arange(36.0),), rms_of, n_resamples=4000, method="percentile", vectorized=False, rng=rng
+    ).confidence_interval
+    ours = bootstrap(unseen, block)
+    half = 0.5 * (theirs.high - theirs.low)
+    assert (ours.low, ours.high) == pytest.approx((theirs.low, theirs.high), abs=0.14 * half)

@@ -189,3 +189,14 @@ def test_without_a_selection_the_diameter_of_each_case_is_told(
 def test_what_is_not_met_is_said_of_the_load_case_that_is_furthest_from_it() -> None:
     cases = [SimpleNamespace(utilisation=utilisation) for utilisation in (np.nan, 1.1, 1.4, 1.2)]
     assert Unmet(tuple(cases)).requirement is cases[2]
+
+
+def test_the_marked_cable_is_the_most_loaded_one(found: Analysis, bare: Analysis) -> None:
+    for analysis in (found, bare):
+        governing = max(
+            (each for each in analysis.requirements if each.id == "breaking_load"),
+            key=lambda each: each.utilisation,
+        )
+        section = section_of(Drawings(analysis), "checks")
+        assert section is not None
+        assert section.context["governing_cable"] == governing.cable
