@@ -41,6 +41,20 @@ def test_the_best_that_holds_is_where_the_first_design_holds(
     assert all(trial.values[0] < holds_from for trial in found.failed)
 
 
+@pytest.mark.parametrize("rank", [0, 1, 3])
+def test_one_of_the_first_that_holds_is_found_in_a_handful(tmp_path: Path, rank: int) -> None:
+    holds_from = 0.05 * rank - 1e-6
+
+    def in_full(trial: Trial) -> float | None:
+        return trial.value if trial.values[0] >= holds_from else None
+
+    verifier = Verifier(plan_of(tmp_path), in_full, lambda _: None, most=10)
+    verifier.verify([tried((0.05 * k, 10.0)) for k in range(100)], tried)
+    assert verifier.best is not None
+    assert verifier.best.values[0] == pytest.approx(0.05 * rank, abs=0.01)
+    assert len(verifier.verified) <= 8
+
+
 def test_a_better_design_among_those_that_fail_is_looked_for(tmp_path: Path) -> None:
     """It lies by itself, 0.3 m wide, where the ranks that are bisected pass it by."""
 
