@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from designer.model.measurements import LogColumn
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.uncertainty import Uniform
+from designer.model.workspace import Workspace
 from designer.resources import data_folder, example_file
 from designer.study import Entry, Study
 
@@ -307,3 +309,13 @@ def test_the_yard_example_names_grades_that_are_shipped() -> None:
     assert study.selection.grades
     for grade in study.selection.grades:
         assert (data_folder("catalog") / f"{grade}.yaml").is_file()
+
+
+def test_values_made_in_python_have_the_defaults_of_a_config(study_of: StudyOf, valid: str) -> None:
+    """But for the time of a proof, which nobody waits for who does not ask."""
+    read = study_of(valid.replace("  samples: 500\n", "")).workspace
+    assert read is not None
+    made = Workspace(read.region)
+    for field in fields(Workspace):
+        if field.name not in {"region", "orientations", "proof_s"}:
+            assert getattr(made, field.name) == getattr(read, field.name), field.name
