@@ -63,7 +63,7 @@ def test_it_predicts_the_same_residuals(robot, effects, unknown, noise, tmp_path
     found, better = diagnosed(tmp_path, robot, truth, unknown, truth, noise=noise)
     wanted = {s.effect.key for s in (*found.given, *found.settings)}
     assert wanted > {s.effect.key for s in found.given} > set()
-    told = check(better, better.measurements, read_measured(better))
+    told = check(better, read_measured(better))
     assert {s.effect.key for s in told.declared.settings} == wanted
     scale = np.repeat([found.noise.length_m, found.noise.tension_N], robot.cables)
     off = np.abs(told.declared.residual / scale - found.residual_after)
