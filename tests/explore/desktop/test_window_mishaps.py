@@ -90,7 +90,7 @@ def test_closing_in_the_middle_of_long_work_loses_nothing(
         empty.keys("Ctrl+R")
     kind = {"report": "export", "selection": "select", "diagnosis": "diagnose"}[work]
     helper = window.live._worker._helpers[kind]
-    empty.bot.waitUntil(lambda: helper._process is not None, timeout=20_000)
+    empty.bot.waitUntil(lambda: helper._process is not None, timeout=60_000)
     process = helper._process
     told = empty.answer(BUTTON.Yes, BUTTON.Save)
     start = time.monotonic()

@@ -32,7 +32,7 @@ def choose(driver: Driver, entry: str) -> None:
     """Click on an entry of the menu of tools."""
     bar, menu = driver.window.menuBar(), driver.find(QMenu, "tools menu")
     driver.click(bar, bar.actionGeometry(menu.menuAction()).center())
-    driver.bot.waitUntil(menu.isVisible, timeout=5000)
+    driver.bot.waitUntil(menu.isVisible, timeout=60_000)
     action = driver.window.menus.actions[entry]
     QTest.mouseClick(menu, LEFT, pos=menu.actionGeometry(action).center())
 

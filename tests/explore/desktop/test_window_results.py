@@ -93,8 +93,8 @@ def test_results_of_an_older_state_are_grey(yard: Driver, monkeypatch: pytest.Mo
     assert saturation(yard) > 60
     colours = yard.picture(results[1])
     yard.type_into("entry robot.platform.mass", "190 kg")
-    assert waits.wait(10.0)
-    yard.bot.waitUntil(lambda: bool(results[0].property("old")), timeout=5000)
+    assert waits.wait(30.0)
+    yard.bot.waitUntil(lambda: bool(results[0].property("old")), timeout=30_000)
     assert all(one.property("old") for one in results)
     assert (yard.picture(results[1]) != colours).any()
     assert legend.texts[1].endswith("of an older state")

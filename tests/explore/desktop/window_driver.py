@@ -50,7 +50,7 @@ class Driver:
         with bot.waitExposed(self.window):
             self.window.show()
         self.window.activateWindow()  # without a window manager nobody else does it
-        bot.waitUntil(self.window.isActiveWindow, timeout=5000)
+        bot.waitUntil(self.window.isActiveWindow, timeout=60_000)
 
     def open(self, study: str | Path) -> None:
         """Open a shipped study by its name, or a file, and wait for all answers."""
@@ -130,7 +130,7 @@ class Driver:
         """Press a shortcut or a key, such as ``Ctrl+Z``, where the focus is."""
         if QApplication.activeWindow() is None:  # after a dialog
             self.window.activateWindow()
-            self.bot.waitUntil(self.window.isActiveWindow, timeout=5000)
+            self.bot.waitUntil(self.window.isActiveWindow, timeout=60_000)
         widget = QApplication.focusWidget() or self.window
         QTest.keySequence(widget, keys)
 
