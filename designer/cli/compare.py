@@ -17,6 +17,9 @@ from designer.cli.options import (
 
 if TYPE_CHECKING:
     from designer.analysis.comparison import Comparison
+    from designer.analysis.result_json import Json
+    from designer.grades.registry import Catalogue
+    from designer.study import Study
 
 
 def compare(
@@ -37,9 +40,14 @@ def compare(
     from designer.io.output import file_names, output_folder
     from designer.io.results import read_result
 
-    inputs = [path if path.suffix == ".json" else study_of(path, no_plugins) for path in (a, b)]
-    sources = [read_result(source) if isinstance(source, Path) else source for source in inputs]
-    catalogues = [None if isinstance(source, dict) else catalogue_of(*source) for source in sources]
+    sources: list[Json | tuple[Study, Catalogue]] = []
+    plugins = None
+    for path in (a, b):
+        if path.suffix == ".json":
+            sources.append(read_result(path))
+        else:
+            study, plugins = study_of(path, no_plugins, plugins)
+            sources.append((study, catalogue_of(study, plugins)))
     announce_compiling()
 
     from designer.analysis.analyse import analyse
@@ -50,10 +58,8 @@ def compare(
     folder = output or Path(f"{a.stem}-{b.stem}-comparison")
     with output_folder(folder) as building, ProgressBars() as bars:
         results = [
-            source
-            if isinstance(source, dict)
-            else analyse(source[0], catalogue, reporter=bars).to_dict()
-            for source, catalogue in zip(sources, catalogues, strict=True)
+            source if isinstance(source, dict) else analyse(*source, reporter=bars).to_dict()
+            for source in sources
         ]
         comparison = compare_results(*results)
         write_comparison(comparison, (a.name, b.name), building, template)

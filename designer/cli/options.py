@@ -83,14 +83,19 @@ Template = Annotated[
 ]
 
 
-def study_of(config: Path, no_plugins: bool) -> tuple[Study, Plugins]:
-    """Read a study with the plugins that there are; names those and effects that cannot be used."""
+def study_of(
+    config: Path, no_plugins: bool, plugins: Plugins | None = None
+) -> tuple[Study, Plugins]:
+    """Read a study with the plugins that there are, or with those that were found for another.
+
+    Names plugins and effects that cannot be used.
+    """
     from designer.cli.terminal import print_left_out
     from designer.effects.load import load_effects
     from designer.io.config import read_study
     from designer.plugins.find import find_plugins
 
-    plugins = find_plugins(with_plugins=not no_plugins)
+    plugins = plugins or find_plugins(with_plugins=not no_plugins)
     effects = load_effects(plugins)
     print_left_out(effects.problems)
     return read_study(config, effects, plugins), plugins

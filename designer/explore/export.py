@@ -21,7 +21,7 @@ from designer.progress import Reporter
 
 What = Literal["report", "picture", "tables", "vtk"]
 """What can be exported; a picture is taken by the window itself."""
-Files = tuple[Path, ...]
+Written = tuple[Path, ...]
 """What was written; the first is the one to open."""
 COLUMNS = {
     "utilisation": "utilisation",
@@ -45,7 +45,7 @@ def export(
     content: What,
     target: Path,
     ropes: Ropes | None = None,
-) -> Files:
+) -> Written:
     """Write files, whole or not at all.
 
     Parameters
@@ -70,7 +70,7 @@ def export(
     return _vtk(question, target)
 
 
-def _report(question: Question, reporter: Reporter, folder: Path) -> Files:
+def _report(question: Question, reporter: Reporter, folder: Path) -> Written:
     """Write the report, by the pipeline of the command."""
     from designer.analysis.analyse import analyse
     from designer.io.results import write_results
@@ -86,7 +86,7 @@ def _report(question: Question, reporter: Reporter, folder: Path) -> Files:
     return tuple(folder / name for name in written)
 
 
-def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Files:
+def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Written:
     pose = here(question)
     tables = {
         "cables.csv": _csv([f.name for f in fields(CableHere)], map(asdict, pose.cables)),
@@ -129,7 +129,7 @@ def _csv(names: Sequence[str], rows: Iterable[dict[str, Any]]) -> str:
     return csv_text([names, *cells])
 
 
-def _vtk(question: Question, target: Path) -> Files:
+def _vtk(question: Question, target: Path) -> Written:
     """Write the map as one unstructured grid, with what the columns of the table hold."""
     import pyvista as pv
 

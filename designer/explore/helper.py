@@ -46,6 +46,8 @@ class Helper:
         self._connection: Connection | None = None
         self._thread: threading.Thread | None = None
         self._closing = False
+        # No daemon, since a sweep has processes of its own; so it is ended where nobody closes it.
+        atexit.register(self._end)
 
     def ask(self, request: Request) -> None:
         """Do this instead of what waits or runs."""
@@ -144,9 +146,8 @@ class Helper:
                 raise EOFError  # given up before it began
             if self._process is None or self._connection is None or not self._process.is_alive():
                 self._connection, theirs = Pipe()
-                process = SPAWN.Process(target=work, args=(theirs,))  # no daemon: a sweep has pools
+                process = SPAWN.Process(target=work, args=(theirs,))
                 process.start()
-                atexit.register(process.terminate)
                 theirs.close()
                 self._process = process
             return self._connection

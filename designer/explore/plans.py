@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from designer.errors import Fault, InputError
-from designer.explore.export import Files
+from designer.explore.export import Written
 from designer.explore.question import Question
 from designer.explore.reading import text_of
 from designer.io.output import file_names, output_folder
@@ -62,7 +62,7 @@ def optimised_study(question: Question, reporter: Reporter, *, plan: Path) -> Op
     )
 
 
-def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: Path) -> Files:
+def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: Path) -> Written:
     """Solve a sweep of the study in the window, as `designer sweep` does.
 
     Writes the store ``target`` and a folder with its report beside it. A sweep that was given up

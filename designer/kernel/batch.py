@@ -133,11 +133,13 @@ def solve_batch(
     potential = np.zeros(count)
     if (inverse_weight != 0.0).all():  # at infinite section nothing is chosen
         if is_thorough:
-            if robot.has_one_branch:
-                share_out_runs(prove_range, _SHARE, solves)
+            if robot.has_one_branch and sizing:
+                proofs = [(*span, situation, figures, out) for *span, figures, _ in runs]
+                share_out_runs(prove_range, _SHARE, proofs)
+            # Where all is proved, the search need not even be compiled.
             is_open = out.verdict != answer.NO_FINITE_CABLE
-            open_runs = [run for run in solves if is_open[run[0] : run[1]].any()]
-            share_out_runs(search_range, _SEARCH_SHARE, open_runs)
+            solves = [run for run in solves if is_open[run[0] : run[1]].any()]
+            share_out_runs(search_range, _SEARCH_SHARE, solves)
         if rates_branches and not robot.has_one_branch:
             rated = [(*s, situation, figures, sizing, out, potential) for *s, figures, _ in runs]
             share_out_runs(rate_range, _SLOW_SHARE, rated)

@@ -82,24 +82,26 @@ def prove_range(
     stop: int,
     situation: Situation,
     figures: CableFigures,
-    inverse_weight: float,
     out: Answers,
 ) -> None:
-    """Tell of poses of a point mass whose straight cables are determinate that none holds them.
+    """Tell of poses of a point mass on as few cables as hold it that no finite cable does.
 
-    Of those that are to be sized: what `search_range` would say, compiled in a fifth of the time.
+    Of those that are to be sized, and have no answer: what `search_range` would say, compiled in a
+    fifth of the time.
     """
     n = figures.kappa.size
     pose = new_pose(figures, situation.rows)
     c, system, pull = pose.cables, np.empty((n, n + 1)), np.empty(n)
     for at in range(start, stop):
+        if out.verdict[at] == SOLVED:
+            continue
         place(pose, situation, at)
         for k in range(n):
             row = pose.rows[k]
             system[k, n] = pose.load[row]
             for i in range(n):
                 system[k, i] = c[LEVEL + row, i] + c[LIFT + row, i] * c[D, i]
-        if not (inverse_weight < 0.0 and out.verdict[at] != SOLVED and solve_small(system, pull)):
+        if not solve_small(system, pull):
             continue
         least, largest = np.inf, -np.inf
         for i in range(n):

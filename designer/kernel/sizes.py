@@ -62,7 +62,8 @@ def sweep_sizes(
         Weight over axial stiffness [1/m] and allowable tension over weight [m], the same on every
         winch.
     ones : array (n_cables,)
-        The weights of the cables relative to each other.
+        The weights of the cables relative to each other. Given, and kappa and strength for each
+        cable, as `designer.kernel.square` has them: functions of both are compiled once.
     cells : array (n_poses,)
         Part of the region that each pose lies in.
     leaves_out_hanging : bool

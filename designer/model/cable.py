@@ -122,7 +122,7 @@ class Cables:
     def __post_init__(self) -> None:
         if not self.each:
             raise ValueError("there must be a cable at least")
-        for name in [figure.name for figure in fields(self)[2:]]:
+        for name in [figure.name for figure in fields(self) if not figure.init]:
             figures = np.array([getattr(cable, name) for cable in self.each])
             of_poses = figures if self.of_pose is None else figures[self.of_pose][:, None]
             object.__setattr__(self, name, of_poses)
@@ -144,7 +144,7 @@ class MaterialsByPose:
     strength_length_m: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
-        for name in [figure.name for figure in fields(self)[2:]]:
+        for name in [figure.name for figure in fields(self) if not figure.init]:
             figures = np.array([getattr(family, name) for family in self.each])
             object.__setattr__(self, name, figures[self.of_pose])
 

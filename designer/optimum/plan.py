@@ -38,7 +38,7 @@ Values = tuple[float, ...]
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """What a result may be at most, or at least [SI]."""
+    """What a result may be ``at most``, or ``at least``: a value [SI]."""
 
     measure: Measure
     value: float
