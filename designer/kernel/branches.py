@@ -20,7 +20,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import FORCE_X, LENGTH, LOAD_FACTOR, SOLVED, WEIGHT, Answers
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, kernel
+from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.interior import Scratch, new_scratch
 from designer.kernel.linear import solve_small
 from designer.kernel.pose import (
@@ -94,7 +94,7 @@ def rate_range(
             out[at] = _potential(pose, scaled_c, limit, is_sizing, scratch.value)
 
 
-@kernel
+@inner
 def _find_value(pose: Pose, scaled_c: float, limit: float, scratch: Scratch) -> bool:
     """Fill the multipliers of the balance: the wrench that no cable off its limits can add to.
 
@@ -127,7 +127,7 @@ def _find_value(pose: Pose, scaled_c: float, limit: float, scratch: Scratch) -> 
     return of_full != 0.0
 
 
-@kernel
+@inner
 def _add_square(system: FloatArray, c: FloatArray, rows: IntArray, i: int) -> None:
     """Add the product of a cable's unit wrench with itself."""
     size = 0.0
@@ -151,7 +151,7 @@ def _is_least(pose: Pose, i: int, scaled_c: float) -> bool:
     return bool(is_lowest or c[P, i] <= c[FLOOR, i] * (1.0 + _AT_LIMIT))
 
 
-@kernel
+@inner
 def _potential(
     pose: Pose, scaled_c: float, limit: float, is_sizing: bool, value: FloatArray
 ) -> float:

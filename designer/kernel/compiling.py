@@ -16,39 +16,32 @@ from designer import __version__
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-# Contraction to fused multiply-add and reciprocals may move the last bit, no more; NaN and
-# infinity keep their meaning, for they mark lanes that failed.
-_FAST = {"contract", "nsz", "arcp"}
+# No `fastmath`: functions that several kernels call are compiled into each of them, and the first
+# copy that a process loads serves all. Only where every operation is rounded as it is written do
+# these copies agree, and with them fresh code and kept code, one processor and another.
+_OPTIONS: dict[str, Any] = {"error_model": "numpy"}
+_CALLED_BY_KERNELS = {**_OPTIONS, "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
 
 
 def element(function: Function) -> Function:
     """Compile scalar physics that is inlined into the loop that calls it, so that it vectorises."""
-    compiled: Function = numba.njit(forceinline=True, error_model="numpy", fastmath=_FAST)(function)
+    compiled: Function = numba.njit(forceinline=True, **_CALLED_BY_KERNELS)(function)
+    return compiled
+
+
+def inner(function: Function) -> Function:
+    """Compile what kernels alone call, not inlined; it has no entry for a call from Python."""
+    compiled: Function = numba.njit(**_CALLED_BY_KERNELS)(function)
     return compiled
 
 
 def kernel(function: Function) -> Function:
-    """Compile a loop over poses; releases the interpreter lock and is cached on disk."""
-    options = {"nogil": True, "error_model": "numpy", "fastmath": _FAST}
-    compiled: Function = numba.njit(**options)(function)
-    return _kept(compiled, "kernel", "physics")
+    """Compile a loop over poses or boxes; releases the interpreter lock and is cached on disk."""
+    compiled: Function = numba.njit(nogil=True, **_OPTIONS)(function)
+    return _kept(compiled)
 
 
-def exact(function: Function) -> Function:
-    """Compile arithmetic that is rounded as it is written, which proofs rest on."""
-    compiled: Function = numba.njit(
-        error_model="numpy", no_cfunc_wrapper=True, no_cpython_wrapper=True
-    )(function)
-    return compiled
-
-
-def exact_kernel(function: Function) -> Function:
-    """Compile a loop over boxes the same way; otherwise as `kernel`."""
-    compiled: Function = numba.njit(nogil=True, error_model="numpy")(function)
-    return _kept(compiled, "kernel", "physics", "proof/enclosure")
-
-
-def _kept(function: Function, *rooms: str) -> Function:
+def _kept(function: Function) -> Function:
     """Keep the machine code on disk; where no folder takes it, each process compiles anew."""
     if numba.config.DISABLE_JIT:
         return function
@@ -64,7 +57,7 @@ def _kept(function: Function, *rooms: str) -> Function:
     files = compiled._cache._cache_file
     # Numba takes cached code for fresh as long as the function's own file is unchanged, although
     # it contains what the function calls; here any change in these folders makes it stale.
-    files._source_stamp = _stamp(*rooms)
+    files._source_stamp = _stamp()
     compiled._cache._cache_file = _Files(files)
     return function
 
@@ -121,8 +114,9 @@ class _Damage:
 
 
 @cache
-def _stamp(*rooms: str) -> str:
-    """Return a digest of all sources in these folders."""
+def _stamp() -> str:
+    """Return a digest of all sources that hold compiled functions."""
+    rooms = ("kernel", "physics", "proof/enclosure")
     folders = [Path(__file__).parents[1] / room for room in rooms]
     sources = [source for folder in folders for source in sorted(folder.glob("*.py"))]
     return sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()

@@ -32,7 +32,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray, VerdictArray
 from designer.kernel.answer import NOT_CONVERGED, NOT_FOUND, OUTSIDE_HULL, RANK_DEFICIENT
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import kernel
+from designer.kernel.compiling import inner, kernel
 from designer.kernel.linear import copy
 from designer.kernel.pose import (
     LEAST,
@@ -85,7 +85,7 @@ class Cone(NamedTuple):
     triangle: FloatArray
 
 
-@kernel
+@inner
 def new_cone(m: int, n: int) -> Cone:
     """Return the arrays for n cables and m balanced components."""
     return Cone(
@@ -138,7 +138,7 @@ def refuse_range(
                 copy(cone.rest, out_wrench[at])
 
 
-@kernel
+@inner
 def _set_rays(pose: Pose, cone: Cone) -> bool:
     """Fill rays and load; False where some cable has no length, hence no direction, or no load."""
     c, rows = pose.cables, pose.rows
@@ -166,7 +166,7 @@ def _along(a: FloatArray, b: FloatArray) -> float:
     return total
 
 
-@kernel
+@inner
 def _normalise(vector: FloatArray) -> float:
     """Bring a vector to unit length, unless it has none; return what it had."""
     size = math.sqrt(_along(vector, vector))
@@ -175,7 +175,7 @@ def _normalise(vector: FloatArray) -> float:
     return size
 
 
-@kernel
+@inner
 def _spans(cone: Cone, n: int) -> bool:
     """Tell whether straight cables span all wrenches: elimination, the longest remainder first."""
     for k in range(cone.rest.size):
@@ -192,7 +192,7 @@ def _spans(cone: Cone, n: int) -> bool:
     return True
 
 
-@kernel
+@inner
 def _clear(vector: FloatArray, basis: FloatArray, count: int) -> float:
     """Take its share in the first rows of a basis from a vector, twice; return what is left."""
     for _ in range(2):
@@ -251,7 +251,7 @@ def _settle(cone: Cone, count: int) -> int:
     return -1
 
 
-@kernel
+@inner
 def _project(cone: Cone, count: int) -> bool:
     """Fill the shares that bring the rays in use nearest to the load, and what is left of it.
 
@@ -277,7 +277,7 @@ def _project(cone: Cone, count: int) -> bool:
     return True
 
 
-@kernel
+@inner
 def _separation(cone: Cone, n_rays: int) -> float:
     """Return the product of the wrench that separates the first rays from the load with the load.
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.kernel.compiling import element, kernel
+from designer.kernel.compiling import element, inner, kernel
 from designer.physics import catenary
 
 _closure: Any = element(catenary.closure)  # of numbers, here
@@ -28,7 +28,7 @@ def solve_thetas(
         out[i] = _theta(length[i], X[i], D[i], kappa[i])
 
 
-@kernel
+@inner
 def _theta(length: float, X: float, D: float, kappa: float) -> float:
     low = min(np.log(1e-9), np.log(max(kappa * length, 1e-30)) - 20.0)
     high = np.log(_LARGEST_THETA)

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.kernel.compiling import kernel
+from designer.kernel.compiling import inner, kernel
 from designer.kernel.linear import solve_small
 from designer.kernel.pose import (
     COUPLING,
@@ -102,7 +102,7 @@ class Scratch(NamedTuple):
     value: FloatArray
 
 
-@kernel
+@inner
 def new_scratch(m: int, n: int) -> Scratch:
     """Return the arrays for n cables in m equations."""
     return Scratch(
@@ -116,7 +116,7 @@ def new_scratch(m: int, n: int) -> Scratch:
     )
 
 
-@kernel
+@inner
 def pull_straight(pose: Pose, ask: Ask, s: float) -> None:
     """Pull as much as straight cables have to, and every cable well above its smallest pull."""
     c = pose.cables
@@ -189,7 +189,7 @@ def _balance(pose: Pose, ask: Ask, s: float, scratch: Scratch) -> float:
     return worst
 
 
-@kernel
+@inner
 def _height(pose: Pose, ask: Ask, s: float, i: int) -> float:
     """Return by how much the scaled pull of a cable is above its smallest."""
     c = pose.cables
@@ -198,7 +198,7 @@ def _height(pose: Pose, ask: Ask, s: float, i: int) -> float:
     return float(c[P, i] / c[UNIT, i] - low - low_c * scaled_c)
 
 
-@kernel
+@inner
 def _gap(pose: Pose, ask: Ask, s: float, scratch: Scratch) -> float:
     """Return the largest residual of the optimality conditions, the balance left out.
 
@@ -226,7 +226,7 @@ def _gap(pose: Pose, ask: Ask, s: float, scratch: Scratch) -> float:
     return max(worst, abs(in_s))
 
 
-@kernel
+@inner
 def _newton(pose: Pose, ask: Ask, s: float, barrier: float, keep: float, scratch: Scratch) -> float:
     """Take one Newton step in everything; return the new s."""
     c, columns, dual, step = pose.cables, scratch.columns, scratch.dual, scratch.step
@@ -252,7 +252,7 @@ def _newton(pose: Pose, ask: Ask, s: float, barrier: float, keep: float, scratch
     return s + forward * ds
 
 
-@kernel
+@inner
 def _condense(pose: Pose, ask: Ask, s: float, barrier: float, scratch: Scratch) -> None:
     """Write the system for the multipliers of the balance and s, all else eliminated.
 
@@ -300,7 +300,7 @@ def _condense(pose: Pose, ask: Ask, s: float, barrier: float, scratch: Scratch) 
     S[m, m + 1] = rest
 
 
-@kernel
+@inner
 def _curvature(pose: Pose, i: int, dual: FloatArray, has_least: bool) -> float:
     """Return the second slope of the Lagrangian in a scaled pull, where it is convex.
 
@@ -315,7 +315,7 @@ def _curvature(pose: Pose, i: int, dual: FloatArray, has_least: bool) -> float:
     return float(max(c[UNIT, i] * c[UNIT, i] * (of_lift + of_tension - of_least), _FLAT))
 
 
-@kernel
+@inner
 def _step_sizes(
     pose: Pose, ask: Ask, s: float, ds: float, barrier: float, keep: float
 ) -> tuple[float, float]:

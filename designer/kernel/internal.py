@@ -24,7 +24,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, kernel
+from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.lanes import (
     POSE_ROWS,
     STEP,
@@ -126,7 +126,7 @@ def solve_internal_poses(
             out_rest[lane[j]] = _rest(slopes, cables, weights, scale, j)
 
 
-@kernel
+@inner
 def _judge(
     row: FloatArray,
     read: FloatArray,
@@ -166,7 +166,7 @@ def _share(residual: float) -> float:
     return _HUBER / size if size > _HUBER else 0.0
 
 
-@kernel
+@inner
 def _set_normal(normal: FloatArray, slopes: FloatArray, cables: FloatArray, m: int) -> None:
     """Set G h⁻¹ Gᵀ and, beside it, -r - G h⁻¹ ∇."""
     n = cables.shape[0]
@@ -188,7 +188,7 @@ def _set_normal(normal: FloatArray, slopes: FloatArray, cables: FloatArray, m: i
                 right[j] -= row_slope[j] * row[_GRADIENT, j] / row[_CURVATURE, j]
 
 
-@kernel
+@inner
 def _set_step(slopes: FloatArray, normal: FloatArray, cables: FloatArray, m: int) -> None:
     """Write dp where `advance` looks for it, over what `assemble` had there."""
     n = cables.shape[0]

@@ -10,7 +10,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import FORCE_X, FORCE_Z, LENGTH
 from designer.kernel.calling import Situation
-from designer.kernel.compiling import kernel
+from designer.kernel.compiling import inner, kernel
 from designer.kernel.linear import copy
 from designer.kernel.table import (
     L_0,
@@ -46,7 +46,7 @@ _LEAST_START = 0.01
 """Pull that a cable starts with at least."""
 
 
-@kernel
+@inner
 def lanes_of(indices: IntArray, first: int) -> IntArray:
     """Return the poses of a block: from `first`, the last one repeated where there are no more."""
     lane = np.empty(LANES, dtype=np.int64)
@@ -81,7 +81,7 @@ def linearise(cables: FloatArray, kappa: FloatArray) -> None:
             condense(row, j, k)
 
 
-@kernel
+@inner
 def assemble(
     A: FloatArray, cables: FloatArray, poses: FloatArray, weights: FloatArray, rows: IntArray
 ) -> None:
@@ -108,7 +108,7 @@ def assemble(
                 rest[j] -= w * (row[level, j] * row[P, j] + row[lift, j] * row[V, j])
 
 
-@kernel
+@inner
 def aim_at_strength(
     poses: FloatArray, A: FloatArray, cables: FloatArray, strength: FloatArray
 ) -> None:
@@ -124,7 +124,7 @@ def aim_at_strength(
             poses[GOAL, j] = min(poses[GOAL, j], bound)
 
 
-@kernel
+@inner
 def approach(poses: FloatArray, gently: bool) -> None:
     """Move c to its goal; gently, down by no more than a factor, and only once p has followed."""
     for j in range(LANES):
@@ -152,7 +152,7 @@ def advance(cables: FloatArray, A: FloatArray, poses: FloatArray) -> None:
             poses[STEP, j] = max(poses[STEP, j], step)
 
 
-@kernel
+@inner
 def first_guess(cables: FloatArray, A: FloatArray, poses: FloatArray, weights: FloatArray) -> None:
     """Set p from the straight-cable balance, kept positive: a slack cable hangs, never pushes."""
     n = cables.shape[0]
@@ -164,7 +164,7 @@ def first_guess(cables: FloatArray, A: FloatArray, poses: FloatArray, weights: F
             row[STRAIGHT, j] = weights[i] * A[i, n + 1, j] * row[L, j]
 
 
-@kernel
+@inner
 def normal_equations(normal: FloatArray, A: FloatArray, m: int, right: int) -> None:
     """Set AᵀA of the first m rows of A and, beside it, Aᵀ times their column `right`."""
     n = normal.shape[0] - 1
@@ -178,7 +178,7 @@ def normal_equations(normal: FloatArray, A: FloatArray, m: int, right: int) -> N
                     entry[j] += own[j] * other[j]
 
 
-@kernel
+@inner
 def write_lane(out: FloatArray, cables: FloatArray, weights: FloatArray, j: int) -> None:
     """Write unstrained length [m] and forces at the platform [N] of a pose, (n_cables, 3).
 

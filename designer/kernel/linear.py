@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from designer.arrays import FloatArray
-from designer.kernel.compiling import element, kernel
+from designer.kernel.compiling import element, inner
 
 
 @element
@@ -13,7 +13,7 @@ def copy(source: FloatArray, target: FloatArray) -> None:
         target[k] = source[k]
 
 
-@kernel
+@inner
 def solve_lanes(A: FloatArray, n: int, columns: int) -> None:
     """Solve A x = b in place in every lane by Gauss elimination with pairwise pivoting.
 
@@ -39,7 +39,7 @@ def solve_lanes(A: FloatArray, n: int, columns: int) -> None:
                 target[j] /= A[k, k, j]
 
 
-@kernel
+@inner
 def _eliminate(
     upper: FloatArray,
     lower: FloatArray,
@@ -70,7 +70,7 @@ def _eliminate(
             lower[m, j] = bottom - factor[j] * top
 
 
-@kernel
+@inner
 def solve_small(A: FloatArray, x: FloatArray) -> bool:
     """Solve one system by elimination with row exchange; False if it is singular.
 

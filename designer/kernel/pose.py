@@ -22,7 +22,7 @@ from designer.kernel.answer import (
     write_pose,
 )
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, kernel
+from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.least_pull import least_pull
 from designer.kernel.table import (
     CHORD,
@@ -117,7 +117,7 @@ class Ask(NamedTuple):
     f_s: float
 
 
-@kernel
+@inner
 def new_pose(figures: CableFigures, rows: IntArray) -> Pose:
     """Return the arrays of a pose, filled with what is the same for all poses."""
     cables = np.zeros((_ROWS, figures.kappa.size))
@@ -157,7 +157,7 @@ def place(pose: Pose, situation: Situation, at: int) -> None:
     scale[SIZE] = size
 
 
-@kernel
+@inner
 def limit_sag(pose: Pose) -> None:
     """Let no pull be smaller than allowed; straight, weightless cables may be without any."""
     c = pose.cables
@@ -192,7 +192,7 @@ def make_straight(pose: Pose, carried: float) -> None:
         c[LOWEST_P, i] = c[CHORD, i]
 
 
-@kernel
+@inner
 def linearise(pose: Pose) -> None:
     """Condense each cable's length: pull and top tension as linear functions of the step in p."""
     c = pose.cables
@@ -268,7 +268,7 @@ def write_wrenches(pose: Pose) -> None:
             c[WRENCH + k, i] = factor * (c[LEVEL + k, i] + c[LIFT + k, i] * c[V_P, i])
 
 
-@kernel
+@inner
 def choose_bounds(pose: Pose, scaled_c: float) -> None:
     """Tell of each cable whether its least tension or its sag sets its smallest pull.
 
@@ -302,7 +302,7 @@ def _line_of_least(pose: Pose, i: int) -> tuple[float, float]:
     return c[P, i] / c[UNIT, i] - c[LOWEST, i] / slope, low_c
 
 
-@kernel
+@inner
 def _measure(pose: Pose, c: float) -> tuple[float, float, float, float]:
     """Return closure error [m] and over each length, balance error over w [m] and load factor.
 

@@ -23,7 +23,7 @@ import numpy as np
 from designer.arrays import FloatArray, VerdictArray
 from designer.kernel.answer import NOT_CONVERGED, OUTSIDE_HULL, RANK_DEFICIENT, SOLVED, Answers
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, kernel
+from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.interior import (
     START_OF_STRAIGHT,
     Scratch,
@@ -317,7 +317,7 @@ def _tension_line(c: FloatArray, i: int) -> tuple[float, float]:
     return 0.5 * abs(c[D, i]), c[CHORD, i]
 
 
-@kernel
+@inner
 def _value_wrenches(pose: Pose, lp: Programme, scratch: Scratch) -> bool:
     """Fill by how much s rises per unit of each component of the scaled wrench; False if undefined.
 
@@ -342,7 +342,7 @@ def _value_wrenches(pose: Pose, lp: Programme, scratch: Scratch) -> bool:
     return True
 
 
-@kernel
+@inner
 def _hang(pose: Pose, lp: Programme, scratch: Scratch) -> float:
     """Let hanging cables find their pull; return the largest relative step of them."""
     c = pose.cables
@@ -355,7 +355,7 @@ def _hang(pose: Pose, lp: Programme, scratch: Scratch) -> float:
     return largest
 
 
-@kernel
+@inner
 def _settle_hanging(pose: Pose, value: FloatArray, i: int) -> float:
     """Move a hanging cable to the pull at which s cannot rise; return the relative step.
 
@@ -388,7 +388,7 @@ def _settle_hanging(pose: Pose, value: FloatArray, i: int) -> float:
     return float(abs(p - before) / p)
 
 
-@kernel
+@inner
 def _lift_slope(c: FloatArray, i: int, p: float) -> float:
     """Return the slope of a cable's upward pull in its pull."""
     length = settled_length(c, i, p)

@@ -27,7 +27,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.kernel.answer import FORCE_X, LOAD_FACTOR, NO_FINITE_CABLE, SOLVED, WEIGHT, Answers
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, kernel
+from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.interior import START_OF_STRAIGHT, climb, new_scratch, pull_straight
 from designer.kernel.linear import copy, solve_small
 from designer.kernel.pose import (
@@ -207,7 +207,7 @@ def _begin(
     return s, state
 
 
-@kernel
+@inner
 def _begin_beside(
     pose: Pose, ask: Ask, best: float, out: Answers, at: int, attempt: int, state: np.uint64
 ) -> tuple[float, np.uint64]:
@@ -231,7 +231,7 @@ def _begin_beside(
     return s, state
 
 
-@kernel
+@inner
 def _slacken(pose: Pose, ask: Ask, s: float, i: int, p: float) -> None:
     """Set a pull, above the smallest that the cable has to keep."""
     scaled_c = max(ask.c_0 + s * ask.c_s, 0.0)
@@ -240,7 +240,7 @@ def _slacken(pose: Pose, ask: Ask, s: float, i: int, p: float) -> None:
     pose.cables[P, i] = max(p, _ABOVE_LEAST * least * pose.cables[UNIT, i])
 
 
-@kernel
+@inner
 def _random(state: np.uint64) -> tuple[np.uint64, float]:
     """Return the next state of Marsaglia's xorshift generator and a number from 0 to 1."""
     state ^= state << np.uint64(13)
@@ -249,7 +249,7 @@ def _random(state: np.uint64) -> tuple[np.uint64, float]:
     return state, float(state >> np.uint64(11)) * 2.0**-53
 
 
-@kernel
+@inner
 def _point_bounds(pose: Pose) -> bool:
     """Tell whether a point mass on as many cables as it has degrees of freedom has no c above zero.
 
@@ -278,7 +278,7 @@ def _point_bounds(pose: Pose) -> bool:
     return bool(lift_of_all < -_SURELY * size)
 
 
-@kernel
+@inner
 def _bounds(pose: Pose, value: FloatArray) -> bool:
     """Tell whether a wrench proves that no c above zero is left."""
     of_load = 0.0
@@ -294,7 +294,7 @@ def _bounds(pose: Pose, value: FloatArray) -> bool:
     return bool(total < -_MARGIN * size)
 
 
-@kernel
+@inner
 def _most(pose: Pose, value: FloatArray, i: int) -> float:
     """Return an upper bound of g over all pulls that the strength of a cable bears."""
     factor = pose.cables[SHARE, i] / pose.scale[FORCE]
@@ -310,7 +310,7 @@ def _most(pose: Pose, value: FloatArray, i: int) -> float:
     return float(largest)
 
 
-@kernel
+@inner
 def _lift_and_top(c: FloatArray, i: int, p: float) -> tuple[float, float]:
     """Return the upward pull and the top tension of a cable at a pull."""
     length = settled_length(c, i, p)

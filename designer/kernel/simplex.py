@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.kernel.compiling import element, kernel
+from designer.kernel.compiling import element, inner
 
 OPTIMAL, INFEASIBLE, STALLED = range(3)
 
@@ -60,7 +60,7 @@ class Programme(NamedTuple):
     dual: FloatArray
 
 
-@kernel
+@inner
 def new_programme(m: int, n: int) -> Programme:
     """Return the arrays for n unknowns in m equations."""
     return Programme(

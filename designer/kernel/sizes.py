@@ -15,7 +15,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import TOLERANCE
 from designer.kernel.calling import Meets, Situation
-from designer.kernel.compiling import element, kernel
+from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.lanes import (
     OVERLOAD,
     POSE_ROWS,
@@ -127,7 +127,7 @@ def _hangs_below(cables: FloatArray, j: int) -> bool:
     return hangs
 
 
-@kernel
+@inner
 def _restart_failed(cables: FloatArray, poses: FloatArray, guess: FloatArray) -> None:
     """Put lanes that failed back to straight cables, so that the next size has a start."""
     for j in range(LANES):

@@ -27,7 +27,7 @@ from designer.kernel.answer import (
     write_pose,
 )
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, kernel
+from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.lanes import (
     CLOSURE,
     GOAL,
@@ -121,7 +121,7 @@ def solve_range(
             break
 
 
-@kernel
+@inner
 def _solve_block(
     cables: FloatArray,
     A: FloatArray,
@@ -224,7 +224,7 @@ def check(
         poses[RESIDUAL, j] += force / poses[SCALE, j]
 
 
-@kernel
+@inner
 def _refuse_other_weights(poses: FloatArray) -> None:
     """Leave unsolved what balances cables that are lighter still than those asked for."""
     for j in range(LANES):

@@ -21,7 +21,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import LENGTH
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import kernel
+from designer.kernel.compiling import inner, kernel
 from designer.kernel.lanes import (
     GOAL,
     LOAD,
@@ -155,7 +155,7 @@ def _start(
             row[L, j] = row[CHORD, j] / (1.0 + kappa * p * row[CHORD, j])
 
 
-@kernel
+@inner
 def _set_left(
     slopes: FloatArray,
     cables: FloatArray,
@@ -173,7 +173,7 @@ def _set_left(
         slopes[r] *= scale[r]
 
 
-@kernel
+@inner
 def _left2(slopes: FloatArray, n: int, m: int, j: int) -> float:
     """Return the square of what is left."""
     residual = 0.0
@@ -201,7 +201,7 @@ def _set_normal(
             normal[i, n, j] -= hold * (row[P, j] - row[_START, j])
 
 
-@kernel
+@inner
 def _keep_least(normal: FloatArray, cables: FloatArray, caution: float) -> None:
     """Leave pulls where they are that are the least and would fall; make steps shorter."""
     n = cables.shape[0]

@@ -27,7 +27,7 @@ INTERVALS = [(low, high) for low, high in product(ENDS, ENDS) if low <= high]
 def operations() -> ModuleType:
     """Return the module without its decorator: Python rounds as the compiled code does."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiling, "exact", lambda function: function)
+        patch.setattr(compiling, "inner", lambda function: function)
         spec = spec_from_file_location("interval_as_python", interval.__file__)
         assert spec is not None and spec.loader is not None
         module = module_from_spec(spec)

@@ -87,15 +87,16 @@ def _by_slsqp(robot: Robot, pose: Poses, cable: Cable, limit: float, start_N) ->
         used = np.maximum(*ends) / allowable
         return np.concatenate([u[-1] - used, 1.0 - sag / chord / limit])
 
-    found = minimize(
-        lambda u: u[-1],
-        np.append(np.log(start_N / chord), 1.0),
-        jac=lambda u: np.eye(len(u))[-1],
-        constraints=[{"type": "eq", "fun": balance}, {"type": "ineq", "fun": room}],
-        method="SLSQP",
-        options={"maxiter": 500, "ftol": 1e-12},
-    )
-    holds = np.abs(balance(found.x)).max() < 1e-8 and room(found.x).min() > -1e-8
+    with np.errstate(over="ignore"):  # a line search tries steps of any length
+        found = minimize(
+            lambda u: u[-1],
+            np.append(np.log(start_N / chord), 1.0),
+            jac=lambda u: np.eye(len(u))[-1],
+            constraints=[{"type": "eq", "fun": balance}, {"type": "ineq", "fun": room}],
+            method="SLSQP",
+            options={"maxiter": 500, "ftol": 1e-12},
+        )
+        holds = np.abs(balance(found.x)).max() < 1e-8 and room(found.x).min() > -1e-8
     return float(found.fun) if holds else np.inf
 
 

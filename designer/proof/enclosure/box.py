@@ -29,7 +29,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.kernel.compiling import exact, exact_kernel
+from designer.kernel.compiling import inner, kernel
 from designer.kernel.linear import copy, solve_small
 from designer.proof.enclosure.cable import enclose
 from designer.proof.enclosure.interval import (
@@ -89,7 +89,7 @@ _NEAR = 1.1
 """Of the level that is asked for: bounds of three cables below which the general one is tried."""
 
 
-@exact_kernel
+@kernel
 def bound_range(start: int, stop: int, scene: Scene, boxes: Boxes, out: FloatArray) -> None:
     """Fill what is told of the boxes `start` to `stop`.
 
@@ -117,7 +117,7 @@ def bound_range(start: int, stop: int, scene: Scene, boxes: Boxes, out: FloatArr
         _choose_cut(boxes, at, work, out[at])
 
 
-@exact
+@inner
 def _place(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> None:
     """Enclose vectors and levers, with their slopes, over a share of the box (0 for its middle)."""
     n, k = work.P.shape
@@ -141,7 +141,7 @@ def _place(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> Non
             put(work.at[i, RX + c], around(boxes.levers[at, i, c], turn))
 
 
-@exact
+@inner
 def _bend(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> bool:
     """Enclose the cables, and their wrenches; tell whether it worked."""
     n, k = work.P.shape
@@ -184,7 +184,7 @@ def _bend(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> bool
     return True
 
 
-@exact
+@inner
 def _level_slope(work: Work, i: int, row: int, d: int) -> Interval:
     """Return the slope of a cable's `level` in a coordinate."""
     s, a = work.slope[i, :, d], work.at[i]
@@ -201,7 +201,7 @@ def _level_slope(work: Work, i: int, row: int, d: int) -> Interval:
     return 0.0, 0.0
 
 
-@exact
+@inner
 def _lift_slope(work: Work, i: int, row: int, d: int) -> Interval:
     if row == 3:
         return get(work.slope[i, RY, d])
@@ -210,7 +210,7 @@ def _lift_slope(work: Work, i: int, row: int, d: int) -> Interval:
     return 0.0, 0.0
 
 
-@exact
+@inner
 def _prepare(scene: Scene, boxes: Boxes, at: int, work: Work) -> bool:
     """Set Z, P, and the balance in the middle; tell whether the middle could be evaluated."""
     n, k = work.P.shape
@@ -250,7 +250,7 @@ def _prepare(scene: Scene, boxes: Boxes, at: int, work: Work) -> bool:
     return True
 
 
-@exact
+@inner
 def _set_mending(scene: Scene, work: Work) -> bool:
     """Set Z = W Gᵀ (G W Gᵀ)⁻¹, column by column; tell whether it worked."""
     G, weight, rows = work.G, work.weight, scene.rows
@@ -275,7 +275,7 @@ def _set_mending(scene: Scene, work: Work) -> bool:
     return True
 
 
-@exact
+@inner
 def _slopes(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> None:
     """Enclose the slopes of the balance."""
     n, k = work.P.shape
@@ -312,7 +312,7 @@ def _slopes(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> No
             put(work.of_u[j, e], total)
 
 
-@exact
+@inner
 def _exists(scene: Scene, boxes: Boxes, at: int, work: Work) -> bool:
     """Look for U that the map takes into itself."""
     m, k = scene.rows.size, boxes.half.shape[1]
@@ -341,7 +341,7 @@ def _exists(scene: Scene, boxes: Boxes, at: int, work: Work) -> bool:
     return False
 
 
-@exact
+@inner
 def _choose_cut(boxes: Boxes, at: int, work: Work, out: FloatArray) -> None:
     """Choose the coordinate that adds most to the enclosure, or else that changes pulls most."""
     n, k = work.P.shape

@@ -38,7 +38,7 @@ from __future__ import annotations
 
 import math
 
-from designer.kernel.compiling import exact
+from designer.kernel.compiling import inner
 from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
 from designer.proof.enclosure.interval import (
     Interval,
@@ -69,7 +69,7 @@ _NEWTONS = 4
 _MARGINS = (1e-14, 1e-12, 1e-9)
 
 
-@exact
+@inner
 def sag(theta: float) -> tuple[Interval, Interval]:
     """Return S and C - 1 at one θ, 0 < θ ≤ 32.
 
@@ -94,7 +94,7 @@ def sag(theta: float) -> tuple[Interval, Interval]:
     return s, divide(multiply(x, rest), add(c, point(1.0)))
 
 
-@exact
+@inner
 def _closure(length: float, p: float, X2: float, D: float, kappa: float) -> Interval:
     """Return right less left side of the closure, at numbers; NaN where κ l is not below 1/p."""
     at = point(length)
@@ -112,7 +112,7 @@ def _closure(length: float, p: float, X2: float, D: float, kappa: float) -> Inte
     return subtract(right, square(at))
 
 
-@exact
+@inner
 def rough_length(p: float, X2: float, D: float, kappa: float) -> float:
     """Return the length nearly, by Newton from that of a rigid cable."""
     theta2 = 0.25 / (p * p)
@@ -124,7 +124,7 @@ def rough_length(p: float, X2: float, D: float, kappa: float) -> float:
     return length
 
 
-@exact
+@inner
 def _length(p: float, X2: float, D: float, kappa: float, side: float) -> float:
     """Return a number proved to be above (side 1) or below (-1) the length; NaN where none was."""
     length = rough_length(p, X2, D, kappa)
@@ -136,7 +136,7 @@ def _length(p: float, X2: float, D: float, kappa: float, side: float) -> float:
     return math.nan
 
 
-@exact
+@inner
 def enclose(
     p: Interval, X2: Interval, D: Interval, kappa: float
 ) -> tuple[bool, Interval, Interval, Interval, Interval, Interval, Interval, Interval, Interval,

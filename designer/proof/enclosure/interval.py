@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from designer.kernel.compiling import exact
+from designer.kernel.compiling import inner
 
 Interval = tuple[float, float]
 
@@ -22,64 +22,64 @@ _PHI = 2.0**-53 * (1.0 + 2.0**-52)
 _ETA = 5e-324
 
 
-@exact
+@inner
 def down(x: float) -> float:
     """Return a number below x, the next one as a rule."""
     return x - (_PHI * abs(x) + _ETA)
 
 
-@exact
+@inner
 def up(x: float) -> float:
     """Return a number above x, the next one as a rule."""
     return x + (_PHI * abs(x) + _ETA)
 
 
-@exact
+@inner
 def point(x: float) -> Interval:
     """Return a number as an interval."""
     return x, x
 
 
-@exact
+@inner
 def add(a: Interval, b: Interval) -> Interval:
     """Return a + b."""
     return down(a[0] + b[0]), up(a[1] + b[1])
 
 
-@exact
+@inner
 def subtract(a: Interval, b: Interval) -> Interval:
     """Return a - b."""
     return down(a[0] - b[1]), up(a[1] - b[0])
 
 
-@exact
+@inner
 def negate(a: Interval) -> Interval:
     """Return -a."""
     return -a[1], -a[0]
 
 
-@exact
+@inner
 def multiply(a: Interval, b: Interval) -> Interval:
     """Return a b."""
     w, x, y, z = a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]
     return down(min(w, x, y, z)), up(max(w, x, y, z))
 
 
-@exact
+@inner
 def scale(a: Interval, factor: float) -> Interval:
     """Return a times a number."""
     x, y = a[0] * factor, a[1] * factor
     return down(min(x, y)), up(max(x, y))
 
 
-@exact
+@inner
 def divide(a: Interval, b: Interval) -> Interval:
     """Return a / b, of a divisor above zero."""
     x, y = a[0] / (b[0] if a[0] < 0.0 else b[1]), a[1] / (b[1] if a[1] < 0.0 else b[0])
     return down(x), up(y)
 
 
-@exact
+@inner
 def square(a: Interval) -> Interval:
     """Return a²; not below zero."""
     least = 0.0 if a[0] <= 0.0 <= a[1] else min(abs(a[0]), abs(a[1]))
@@ -87,38 +87,38 @@ def square(a: Interval) -> Interval:
     return max(down(least * least), 0.0), up(largest * largest)
 
 
-@exact
+@inner
 def root(a: Interval) -> Interval:
     """Return √a, of what of it is not below zero."""
     return max(down(math.sqrt(max(a[0], 0.0))), 0.0), up(math.sqrt(a[1]))
 
 
-@exact
+@inner
 def absolute(a: Interval) -> Interval:
     """Return |a|."""
     least = 0.0 if a[0] <= 0.0 <= a[1] else min(abs(a[0]), abs(a[1]))
     return least, size(a)
 
 
-@exact
+@inner
 def sign(a: Interval) -> Interval:
     """Return the sign of a, from -1 to 1 where it is not known: the slopes of |a|."""
     return (1.0 if a[0] > 0.0 else -1.0), (-1.0 if a[1] < 0.0 else 1.0)
 
 
-@exact
+@inner
 def size(a: Interval) -> float:
     """Return the largest of |a|."""
     return max(-a[0], a[1])
 
 
-@exact
+@inner
 def around(middle: float, radius: float) -> Interval:
     """Return the numbers that are no farther than `radius` from `middle`."""
     return down(middle - radius), up(middle + radius)
 
 
-@exact
+@inner
 def middle(a: Interval) -> float:
     """Return about its middle."""
     return 0.5 * (a[0] + a[1])

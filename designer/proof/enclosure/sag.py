@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from designer.kernel.compiling import exact
+from designer.kernel.compiling import inner
 from designer.proof.enclosure.cable import LARGEST_THETA, sag
 from designer.proof.enclosure.interval import (
     add,
@@ -32,7 +32,7 @@ _LOG_MARGIN = 2.0**-50
 """Relative and absolute: more than the last place, which a logarithm is good to."""
 
 
-@exact
+@inner
 def bound_sag(p: float, slope: float) -> tuple[float, float]:
     """Return bounds on sag across and below over chord, pulls ≥ p > 0 and slopes ≥ slope ≥ 0."""
     theta = up(0.5 / p)

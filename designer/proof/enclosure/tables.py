@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.kernel.compiling import exact
+from designer.kernel.compiling import inner
 from designer.proof.enclosure.interval import Interval
 
 # Of a cable over the box: vector to the exit point and lever, by components.
@@ -119,7 +119,7 @@ class Work(NamedTuple):
     solution: FloatArray  # (m,)
 
 
-@exact
+@inner
 def new_work(n: int, m: int, k: int) -> Work:
     """Return the arrays for n cables, m balanced directions and k coordinates."""
     return Work(
@@ -147,13 +147,13 @@ def new_work(n: int, m: int, k: int) -> Work:
     )
 
 
-@exact
+@inner
 def get(table: FloatArray) -> Interval:
     """Return an interval (2,) of a table."""
     return table[0], table[1]
 
 
-@exact
+@inner
 def put(table: FloatArray, a: Interval) -> None:
     """Put an interval into a table."""
     table[0], table[1] = a

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.kernel.compiling import exact
+from designer.kernel.compiling import inner
 from designer.kernel.linear import copy
 from designer.proof.enclosure.interval import (
     Interval,
@@ -47,7 +47,7 @@ _STEEPEST = 1e8
 """Slope of a chord that stands for all steeper ones, which sag less."""
 
 
-@exact
+@inner
 def along(work: Work, i: int, d: int, first: int) -> Interval:
     """Return the slope of v (first = V) or t (T) of a cable in a coordinate, its pull held."""
     s, a, row = work.slope[i, :, d], work.at[i], work.cable[i]
@@ -56,7 +56,7 @@ def along(work: Work, i: int, d: int, first: int) -> Interval:
     return add(multiply(get(row[first + 2]), X2), multiply(get(row[first + 3]), get(s[EZ])))
 
 
-@exact
+@inner
 def _upward(work: Work, i: int, what: int) -> Interval:
     """Return v, or its slope, of the lower end of a cable: of the base, -l - v."""
     row = work.cable[i]
@@ -64,7 +64,7 @@ def _upward(work: Work, i: int, what: int) -> Interval:
     return v if work.at[i, EZ, 0] >= 0.0 else negate(add(v, length))
 
 
-@exact
+@inner
 def level_square(work: Work, i: int) -> Interval:
     """Enclose the square of a cable's level force."""
     a = work.at[i]
@@ -72,7 +72,7 @@ def level_square(work: Work, i: int) -> Interval:
     return multiply(square(get(work.cable[i, PULL])), X2)
 
 
-@exact
+@inner
 def lowest(work: Work, i: int) -> Interval:
     """Enclose the square of the least tension anywhere in a cable.
 
@@ -82,7 +82,7 @@ def lowest(work: Work, i: int) -> Interval:
     return add(level_square(work, i), square((max(lift[0], 0.0), max(lift[1], 0.0))))
 
 
-@exact
+@inner
 def _is_across(work: Work, i: int) -> bool:
     """Tell whether it is not known which end of a cable is lower.
 
@@ -91,7 +91,7 @@ def _is_across(work: Work, i: int) -> bool:
     return bool(work.at[i, EZ, 0] < 0.0 <= work.at[i, EZ, 1])
 
 
-@exact
+@inner
 def _lowest_slope(work: Work, i: int, d: int) -> Interval:
     """Enclose the slope of that square in a coordinate (d ≥ 0), or in its own pull (-1)."""
     row, s, a = work.cable[i], work.slope[i, :, d], work.at[i]
@@ -113,7 +113,7 @@ def _lowest_slope(work: Work, i: int, d: int) -> Interval:
     return add(total, multiply(lift, change))
 
 
-@exact
+@inner
 def _most_sag(work: Work, i: int) -> float:
     """Bound the sag of a cable over its chord."""
     a = work.at[i]
@@ -123,7 +123,7 @@ def _most_sag(work: Work, i: int) -> float:
     return across if _upward(work, i, 0)[0] >= 0.0 else max(across, below)
 
 
-@exact
+@inner
 def _rise(scene: Scene, boxes: Boxes, at: int, work: Work, slope_u: float, i: int) -> tuple[
     float, float, int
 ]:  # fmt: skip
@@ -151,14 +151,14 @@ def _rise(scene: Scene, boxes: Boxes, at: int, work: Work, slope_u: float, i: in
     return up(up(at_corner + spread) + rounding), at_corner, worst_corner
 
 
-@exact
+@inner
 def _set_tilt(work: Work, d: int, slope: Interval, factor: float) -> None:
     work.tilt[d] = factor * middle(slope)
     spread = max(slope[1] - middle(slope), middle(slope) - slope[0])
     work.spread[d] = up(spread)
 
 
-@exact
+@inner
 def bound_tension(scene: Scene, boxes: Boxes, at: int, work: Work, out: FloatArray) -> None:
     """Set the bound and the estimate; leave the former infinite where limits are missed.
 

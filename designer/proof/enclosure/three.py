@@ -24,7 +24,7 @@ from __future__ import annotations
 import math
 
 from designer.arrays import FloatArray
-from designer.kernel.compiling import exact
+from designer.kernel.compiling import inner
 from designer.kernel.unit_cable import unit_cable
 from designer.proof.enclosure.cable import enclose, rough_length
 from designer.proof.enclosure.interval import (
@@ -44,7 +44,7 @@ _BEYOND = 1e-6
 """Relative: by so much a root is left behind before it is proved to lie between."""
 
 
-@exact
+@inner
 def is_three(scene: Scene, boxes: Boxes, at: int) -> bool:
     """Tell whether a box is one of a point mass on three cables that hangs from level axes."""
     load, axes = boxes.load[at], scene.axes
@@ -60,7 +60,7 @@ def is_three(scene: Scene, boxes: Boxes, at: int) -> bool:
     )
 
 
-@exact
+@inner
 def bound_three(scene: Scene, boxes: Boxes, at: int, work: Work) -> float:
     """Return a bound on the largest tension over weight in a placed box; infinite where none."""
     if not _set_weights(scene, boxes, at, work):
@@ -87,7 +87,7 @@ def bound_three(scene: Scene, boxes: Boxes, at: int, work: Work) -> float:
     return worst
 
 
-@exact
+@inner
 def _set_weights(scene: Scene, boxes: Boxes, at: int, work: Work) -> bool:
     """Set the ranges of μ; tell whether all are above zero."""
     share, corners = work.share, boxes.corners[at]
@@ -108,7 +108,7 @@ def _set_weights(scene: Scene, boxes: Boxes, at: int, work: Work) -> bool:
     return bool(share[0, 0] > 0.0 and share[1, 0] > 0.0 and share[2, 0] > 0.0)
 
 
-@exact
+@inner
 def _vector(
     scene: Scene, boxes: Boxes, at: int, i: int, corner: FloatArray
 ) -> tuple[Interval, Interval]:
@@ -119,13 +119,13 @@ def _vector(
     return around(x, 2.0 * scene.fuzz), around(y, 2.0 * scene.fuzz)
 
 
-@exact
+@inner
 def _squares(work: Work, i: int) -> Interval:
     """Return the range of the squared horizontal distance."""
     return add(square(get(work.at[i, EX])), square(get(work.at[i, EY])))
 
 
-@exact
+@inner
 def _root(scene: Scene, work: Work, c: Interval, start: float, side: float) -> float:
     """Return an s at which f is proved to be of one sign in all of the box; NaN where none was."""
     s = start
@@ -157,7 +157,7 @@ def _root(scene: Scene, work: Work, c: Interval, start: float, side: float) -> f
     return math.nan
 
 
-@exact
+@inner
 def _top_tension(p: Interval, X2: Interval, D: Interval, kappa: float) -> float:
     """Return a bound on the top tension over a box.
 
