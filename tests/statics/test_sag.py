@@ -87,7 +87,7 @@ def _by_slsqp(robot: Robot, pose: Poses, cable: Cable, limit: float, start_N) ->
         used = np.maximum(*ends) / allowable
         return np.concatenate([u[-1] - used, 1.0 - sag / chord / limit])
 
-    with np.errstate(over="ignore"):  # a line search tries steps of any length
+    with np.errstate(over="ignore", invalid="ignore"):  # its line search tries any step
         found = minimize(
             lambda u: u[-1],
             np.append(np.log(start_N / chord), 1.0),
