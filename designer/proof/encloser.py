@@ -154,10 +154,11 @@ class Encloser:
         levers: FloatArray,
         arm: FloatArray,
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return slopes of levers and of the load's moment with the turn, and how much they change.
+        """Return slopes of levers and of the load's moment with the turn, and how far others are.
 
-        The rotation is the exponential of a skew matrix, so that its slope changes by no more than
-        the angle between two turns.
+        The rotation is the exponential of a skew matrix, so that its derivative changes by no more
+        than the angle between two turns; a slope from the middle is the mean of derivatives on the
+        way, hence within half of that.
         """
         count, n = levers.shape[:2]
         if middle.shape[1] == 3:
@@ -170,7 +171,7 @@ class Encloser:
             np.linalg.norm(self._robot.attachments_m, axis=1),
             np.linalg.norm(self._robot.platform.centre_of_mass_m) * np.linalg.norm(centre),
         )
-        bent = (np.linalg.norm(half[:, 3:], axis=1)[:, None] + _ULPS) * size * (1.0 + _ULPS)
+        bent = (0.5 * np.linalg.norm(half[:, 3:], axis=1)[:, None] + _ULPS) * size * (1.0 + _ULPS)
         return turns.transpose(0, 1, 3, 2), load_turns.transpose(0, 2, 1), bent
 
     def _pulls(

@@ -9,19 +9,25 @@ directions,
 
 p₀ solves the middle, nearly; Z is such that ∂F/∂u is nearly the identity, and P such that ∂F/∂x is
 nearly zero. Where there are more cables than directions, the rest of P is free: internal forces.
-None of that has to be exact. With intervals for both slopes over the box, the mean value theorem
-gives
+None of that has to be exact. Let S and N enclose *slopes from the middle* over the box,
 
-    |u - F(x, u)|_j ≤ |F(0, 0)|_j + Σ_k |∂F/∂x|_jk h_k + Σ_l |1 - ∂F/∂u|_jl U_l,    |u_l| ≤ U_l.
+    F(x, u) - F(0, 0) = S x + (1 - N) u      for some S ∈ 𝐒, N ∈ 𝐍, of each x and u.
+
+They are narrower than derivatives, since of each product only one factor changes at a time:
+p a - p₀ a₀ = (p - p₀) a₀ + p (a - a₀), of a product of two that are known alike with the mean of
+both ends of each; and a cable's force follows its pull where its ends stand in the middle, by the
+mean value theorem, then its ends. So
+
+    |u - F(x, u)|_j ≤ |F(0, 0)|_j + Σ_k |𝐒|_jk h_k + Σ_l |𝐍|_jl U_l,    |u_l| ≤ U_l.
 
 If the right side is at most U_j for all j, then u ↦ u - F(x, u) maps the box |u| ≤ U into itself,
 for every x; it is continuous, so it has a fixed point (Brouwer), and there F = 0. **So in each pose
 of the box there is an equilibrium with pulls p(x, u), |u| ≤ U**: the test of Krawczyk with poses as
 parameters. That it is stable, or the only one, is not claimed.
 
-Its tensions follow from the same slopes, t(x, u) ∈ t(0, 0) + T x + N u; since both residual and
-slopes' widths shrink with the box, what this adds to the tension shrinks with the square of it. The
-linear part is taken at the corners of what of the box lies in the region.
+Its tensions have slopes of the same kind; since both residual and slopes' widths shrink with the
+box, what this adds to the tension shrinks with the square of it. The linear part is taken at the
+corners of what of the box lies in the region.
 """
 
 from __future__ import annotations
@@ -119,7 +125,7 @@ def bound_range(start: int, stop: int, scene: Scene, boxes: Boxes, out: FloatArr
 
 @inner
 def _place(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> None:
-    """Enclose vectors and levers, with their slopes, over a share of the box (0 for its middle)."""
+    """Enclose vectors and levers, and their slopes, over a share of the box (0 for its middle)."""
     n, k = work.P.shape
     half = boxes.half[at]
     for i in range(n):
@@ -139,6 +145,10 @@ def _place(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> Non
                 turn = up(turn + up(up(share * half[d]) * size(lever)))
             put(work.at[i, EX + c], around(boxes.vectors[at, i, c], reach))
             put(work.at[i, RX + c], around(boxes.levers[at, i, c], turn))
+        if share == 0.0:
+            copy(work.at[i].reshape(-1), work.start_at[i].reshape(-1))
+        for c in range(6):
+            put(work.mean[i, c], scale(add(get(work.at[i, c]), get(work.start_at[i, c])), 0.5))
 
 
 @inner
@@ -157,6 +167,12 @@ def _bend(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> bool
         rx, ry, rz = get(work.at[i, RX]), get(work.at[i, RY]), get(work.at[i, RZ])
         enclosure = enclose(p, add(square(ex), square(ey)), ez, scene.kappa)
         worked, length, l_p, l_X2, l_D, v, v_p, v_X2, v_D, t, t_p, t_X2, t_D = enclosure
+        if share > 0.0:  # the pull changes first, while the ends stand in the middle
+            start = work.start_at[i]
+            X2 = add(square(get(start[EX])), square(get(start[EY])))
+            enclosure = enclose(p, X2, get(start[EZ]), scene.kappa)
+            l_p, v_p, t_p = enclosure[2], enclosure[6], enclosure[10]
+            worked = worked and enclosure[0]
         if not worked:
             return False
         row = work.cable[i]
@@ -181,13 +197,16 @@ def _bend(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> bool
         put(work.lift[i, 2], point(1.0))
         put(work.lift[i, 3], ry)
         put(work.lift[i, 4], negate(rx))
+        if share == 0.0:
+            copy(work.level[i].reshape(-1), work.start_level[i].reshape(-1))
+            copy(work.lift[i].reshape(-1), work.start_lift[i].reshape(-1))
     return True
 
 
 @inner
 def _level_slope(work: Work, i: int, row: int, d: int) -> Interval:
     """Return the slope of a cable's `level` in a coordinate."""
-    s, a = work.slope[i, :, d], work.at[i]
+    s, a = work.slope[i, :, d], work.mean[i]
     if row < 2:
         return get(s[row])
     if row == 3:
@@ -291,7 +310,7 @@ def _slopes(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> No
                 total = scale(around(-slope, bent), c)
             for i in range(n):
                 cable = work.cable[i]
-                level, lift = get(work.level[i, row]), get(work.lift[i, row])
+                level, lift = get(work.start_level[i, row]), get(work.start_lift[i, row])
                 term = add(
                     scale(level, work.P[i, d]),
                     multiply(get(cable[PULL]), _level_slope(work, i, row, d)),
@@ -306,7 +325,7 @@ def _slopes(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> No
             total = point(1.0 if e == j else 0.0)
             for i in range(n):
                 cable = work.cable[i]
-                level, lift = get(work.level[i, row]), get(work.lift[i, row])
+                level, lift = get(work.start_level[i, row]), get(work.start_lift[i, row])
                 slope = add(level, multiply(get(cable[V_P]), lift))
                 total = subtract(total, scale(slope, work.Z[i, e]))
             put(work.of_u[j, e], total)

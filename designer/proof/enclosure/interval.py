@@ -5,9 +5,9 @@ smaller than the number above, with φ = u (1 + 2 u), u = 2⁻⁵³ and η the s
 (Rump, Zimmermann, Boldo, Melquiond, BIT 49 (2009), 419-431). Sum, product, quotient and root of
 IEEE 754 are off by half a unit in the last place at most, so that the true result lies between.
 
-This holds only as long as the compiler changes nothing: these functions are compiled without the
-liberties that the solvers take (`designer.kernel.compiling`). Where there is no true result, such
-as beyond the largest number, an end is infinite or NaN; whoever concludes something asks for that.
+This holds only as long as the compiler changes nothing, as `designer.kernel.compiling` sees to.
+Where there is no true result, such as beyond the largest number, an end is infinite or NaN; whoever
+concludes something asks for that.
 """
 
 from __future__ import annotations

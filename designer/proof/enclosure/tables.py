@@ -74,7 +74,7 @@ class Boxes(NamedTuple):
     load_turns : array (n_boxes, 3, k - 3)
         Slopes of its moment with the turn.
     bent : array (n_boxes, n + 1)
-        Bound on how much slopes of levers, and of the moment, change within the box.
+        Bound on how far slopes of levers, and of the moment, from the middle are from these.
     pull : array (n_boxes, n)
         p₀.
     follow : array (n_boxes, n, k)
@@ -97,11 +97,15 @@ class Work(NamedTuple):
     """Arrays of one box; the last axis of size two holds the ends of intervals."""
 
     at: FloatArray  # (n, 6, 2)
-    slope: FloatArray  # (n, 6, k, 2), of the same
+    start_at: FloatArray  # (n, 6, 2), the same in the middle of the box
+    mean: FloatArray  # (n, 6, 2), half the sum of both
+    slope: FloatArray  # (n, 6, k, 2), of the same, from the middle
     cable: FloatArray  # (n, 13, 2)
     share: FloatArray  # (n, 2), μ of a point mass on three cables
     level: FloatArray  # (n, 6, 2), wrench of a unit pull
     lift: FloatArray  # (n, 6, 2), wrench of a unit upward pull
+    start_level: FloatArray  # (n, 6, 2), the same in the middle of the box
+    start_lift: FloatArray  # (n, 6, 2)
     of_x: FloatArray  # (m, k, 2), slopes of the balance
     of_u: FloatArray  # (m, m, 2), identity less slopes
     start: FloatArray  # (m,), size of the balance in the middle
@@ -124,9 +128,13 @@ def new_work(n: int, m: int, k: int) -> Work:
     """Return the arrays for n cables, m balanced directions and k coordinates."""
     return Work(
         np.zeros((n, 6, 2)),
+        np.zeros((n, 6, 2)),
+        np.zeros((n, 6, 2)),
         np.zeros((n, 6, k, 2)),
         np.zeros((n, 13, 2)),
         np.zeros((n, 2)),
+        np.zeros((n, 6, 2)),
+        np.zeros((n, 6, 2)),
         np.zeros((n, 6, 2)),
         np.zeros((n, 6, 2)),
         np.zeros((m, k, 2)),

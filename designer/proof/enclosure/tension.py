@@ -50,7 +50,7 @@ _STEEPEST = 1e8
 @inner
 def along(work: Work, i: int, d: int, first: int) -> Interval:
     """Return the slope of v (first = V) or t (T) of a cable in a coordinate, its pull held."""
-    s, a, row = work.slope[i, :, d], work.at[i], work.cable[i]
+    s, a, row = work.slope[i, :, d], work.mean[i], work.cable[i]
     one, two = multiply(get(s[EX]), get(a[EX])), multiply(get(s[EY]), get(a[EY]))
     X2 = scale(add(one, two), 2.0)
     return add(multiply(get(row[first + 2]), X2), multiply(get(row[first + 3]), get(s[EZ])))
@@ -100,7 +100,8 @@ def _lowest_slope(work: Work, i: int, d: int) -> Interval:
     total = scale(multiply(multiply(p, X2), dp), 2.0)
     dX2, dD = point(0.0), point(0.0)
     if d >= 0:
-        one, two = multiply(get(s[EX]), get(a[EX])), multiply(get(s[EY]), get(a[EY]))
+        b = work.mean[i]
+        one, two = multiply(get(s[EX]), get(b[EX])), multiply(get(s[EY]), get(b[EY]))
         dX2, dD = scale(add(one, two), 2.0), get(s[EZ])
         total = add(total, multiply(square(p), dX2))
     if _is_across(work, i):
