@@ -187,7 +187,10 @@ class Encloser:
             step[:, d] = half[:, d]
             ahead, there = self._solve(middle + step, raised)
             behind, too = self._solve(middle - step, raised)
-            change = np.where((there & too)[:, None], 0.5 * (ahead - behind), 0.0)
+            # Where another branch begins between them, the slope of the middle's own.
+            before, after = pull - behind, ahead - pull
+            change = np.where(np.abs(before) < np.abs(after), before, after)
+            change = np.where((there & too)[:, None] & (before * after > 0.0), change, 0.0)
             largest_change = _MOST_FOLLOWED * pull
             follow[..., d] = np.clip(change, -largest_change, largest_change) / half[:, d, None]
         return pull, solved, follow
