@@ -178,6 +178,20 @@ def write_whole(path: Path, content: bytes) -> None:
         unfinished.unlink(missing_ok=True)
 
 
+def kept_path(*names: str) -> Path:
+    """Return where something is kept for other runs: in the user's folder for such."""
+    from platformdirs import user_cache_path
+
+    return user_cache_path("cdpr-designer", appauthor=False).joinpath(*names)
+
+
+def keep(path: Path, content: bytes) -> None:
+    """Keep a file for other runs, if the disk takes it."""
+    with suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(path, content)
+
+
 def write_file(path: Path, text: str) -> None:
     """Write a file, whole or not at all, over what it was.
 

@@ -10,12 +10,11 @@ import hashlib
 import html
 import io
 import re
-from contextlib import suppress
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
 
-from designer.io.output import write_whole
+from designer.io.output import keep, kept_path
 
 FACES = (
     ("Report Sans", 400, "normal", "DejaVuSans"),
@@ -55,19 +54,15 @@ def with_fonts(page: str) -> str:
 @lru_cache(maxsize=2 * len(FACES))
 def _letters_of(file: str, letters: str) -> str:
     """Return these letters of a font as a WOFF file in base64, kept for other runs."""
-    from platformdirs import user_cache_path
-
     made_of = (file, letters, version("matplotlib"), version("fonttools"))
     name = hashlib.sha256(repr(made_of).encode()).hexdigest()[:16]
-    kept = user_cache_path("cdpr-designer", appauthor=False) / "fonts" / f"{name}.woff"
+    path = kept_path("fonts", f"{name}.woff")
     try:
-        font = kept.read_bytes()
+        font = path.read_bytes()
     except OSError:
         font = _subset(file, letters)
         if letters == _ALONE:
-            with suppress(OSError):
-                kept.parent.mkdir(parents=True, exist_ok=True)
-                write_whole(kept, font)
+            keep(path, font)
     return base64.b64encode(font).decode()
 
 

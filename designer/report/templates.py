@@ -43,12 +43,13 @@ def environment(user_folder: Path | None = None) -> Environment:
     """
     from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined
 
-    from designer.report.flow import FlowingText
+    from designer.report.flow import FlowingText, KeptTemplates
 
     shipped = FileSystemLoader(data_folder("reports"))
     own = [FileSystemLoader(user_folder)] if user_folder is not None else []
     templates = Environment(
         extensions=[FlowingText],
+        bytecode_cache=KeptTemplates(),
         loader=ChoiceLoader([*own, shipped, PrefixLoader({"default": shipped})]),
         autoescape=True,
         undefined=StrictUndefined,

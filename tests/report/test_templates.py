@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from datetime import datetime
 from pathlib import Path
 
+import platformdirs
 import pytest
 
 from designer.analysis.comparison import compare
@@ -14,7 +16,7 @@ from designer.errors import InputError
 from designer.report.comparison import comparison_report
 from designer.report.document import Report
 from designer.report.render import render_html, write_pages
-from designer.report.templates import check_templates
+from designer.report.templates import check_templates, environment
 
 EXTENDS = '{% extends "default/page.html.j2" %}'
 
@@ -105,3 +107,49 @@ def test_the_command_refuses_a_folder_that_is_none(
             main()
         assert stop.value.code == 2
         assert capsys.readouterr().err.startswith(f"{folder}: {problem} (expected ")
+
+
+@pytest.fixture
+def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(platformdirs, "user_cache_path", lambda *_, **__: tmp_path / "cache")
+    return tmp_path / "cache" / "templates"
+
+
+def greeting(folder: Path) -> str:
+    return environment(folder).get_template("greeting.html.j2").render()
+
+
+def test_compiled_templates_are_kept(
+    own: Path, kept: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page(own, "Good day", "greeting.html.j2")
+    assert greeting(own) == "Good day"
+    assert len(list(kept.iterdir())) == 1
+    monkeypatch.setattr("jinja2.Environment.compile", None)
+    assert greeting(own) == "Good day"
+
+
+def test_a_template_that_changed_is_compiled_anew(own: Path, kept: Path) -> None:
+    for text in ("Good day", "Good night"):
+        page(own, text, "greeting.html.j2")
+        assert greeting(own) == text
+    assert len(list(kept.iterdir())) == 1
+
+
+def test_a_damaged_kept_template_is_compiled_anew(own: Path, kept: Path) -> None:
+    page(own, "Good day", "greeting.html.j2")
+    for damage in (
+        lambda content: content[:-3],
+        lambda content: content[:-1] + b"?",
+        lambda _: b"",
+    ):
+        greeting(own)
+        (file,) = kept.iterdir()
+        file.write_bytes(damage(file.read_bytes()))
+        assert greeting(own) == "Good day"
+
+
+def test_templates_need_no_folder_to_be_kept_in(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    nowhere = Path(os.devnull) / "no folder"
+    monkeypatch.setattr(platformdirs, "user_cache_path", lambda *_, **__: nowhere)
+    assert greeting(page(own, "Good day", "greeting.html.j2")) == "Good day"
