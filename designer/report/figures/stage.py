@@ -95,11 +95,13 @@ class SceneCanvas:
 
         self.view.aim(self.scene)
         self.window.Render()
-        (width, height), pixels = self.window.GetSize(), vtkUnsignedCharArray()
-        self.window.GetPixelData(0, 0, width - 1, height - 1, 1, pixels, 0)
+        size, pixels = self.window.GetSize(), vtkUnsignedCharArray()
+        self.window.GetRGBACharPixelData(0, 0, size[0] - 1, size[1] - 1, 1, pixels, 0)
         self.clear()
-        image = Pillow.fromarray(vtk_to_numpy(pixels).reshape(height, width, 3))
-        return np.asarray(image.reduce(self.pen.samples))[::-1]  # VTK counts rows from below
+        # With a fourth byte, so that Pillow takes the array as it is, without a copy.
+        image = Pillow.frombuffer("RGBX", size, vtk_to_numpy(pixels), "raw", "RGBX", 0, 1)
+        rows = np.asarray(image.reduce(self.pen.samples))
+        return rows[::-1, :, :3]  # VTK counts rows from below
 
     def add(
         self, mesh: DataSet, colour: Any = None, width: float = 1.0, opacity: float = 1.0
