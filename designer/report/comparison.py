@@ -8,9 +8,8 @@ from pathlib import Path
 
 from designer.analysis.comparison import Comparison
 from designer.report import format as fmt
-from designer.report.document import Report, Section
+from designer.report.document import Drawing, Report, Section, vector
 from designer.report.figures import canvas, palette
-from designer.report.pictures import Drawing, vector
 from designer.report.render import write_pages
 
 

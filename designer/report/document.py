@@ -1,14 +1,26 @@
-"""What a report is: sections with what their templates are given, and the head of the document."""
+"""What a document is: its head, sections with what their templates are given, and drawings."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import base64
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import NamedTuple
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 from designer import __version__
+from designer.documents.opened import read_input
+from designer.documents.picture import picture_type, why_not_shown
+from designer.grades.registry import Catalogue
 from designer.report.phrases import shown_time
+from designer.study import Study
+
+if TYPE_CHECKING:
+    from designer.report.figures.stage import Image
 
 MOST_ROWS = 8
 """As many rows of a ranking as a reader takes in; files beside the report have the rest."""
@@ -122,3 +134,83 @@ class Report:
     def section(self, section_id: str) -> Section:
         """Return a section that this report has."""
         return next(section for section in self.sections if section.id == section_id)
+
+
+_DIGITS = 12
+"""Of a digest on the first page; the provenance has all of them."""
+
+
+def control_of(study: Study, catalogue: Catalogue | None = None) -> Control:
+    """Return the head of a document on a study; with the grades that it was solved with."""
+    given = study.document
+    names = ("number", "revision", "author", "checker", "approver")
+    titles = ("Document", "Revision", "Author", "Checked", "Approved")
+    boxes = (
+        ControlBox(title, getattr(given, name)) for name, title in zip(names, titles, strict=True)
+    )
+    return Control(
+        tuple(box for box in boxes if box.value),
+        "" if given.logo is None else _data_uri(given.logo),
+        " · ".join(f"{what} {digest[:_DIGITS]}" for what, digest in _digests(study, catalogue)),
+    )
+
+
+def _digests(study: Study, catalogue: Catalogue | None) -> Iterator[tuple[str, str]]:
+    if study.source.sha256:
+        yield "SHA-256 of configuration", study.source.sha256
+    for source in catalogue.sources if catalogue is not None else ():
+        if source.n_grades:
+            yield f"grades {source.name}", source.sha256
+    if study.measurements is not None:
+        with suppress(OSError):  # a design needs no data, so they may be gone
+            yield "measured data", sha256(read_input(study.measurements.file)).hexdigest()
+
+
+def _data_uri(path: Path) -> str:
+    """Return a picture; empty where it is gone or is none, although the study was read."""
+    with suppress(OSError):
+        content = read_input(path)
+        if why_not_shown(content) is None:
+            return f"data:{picture_type(content[:512])};base64,{base64.b64encode(content).decode()}"
+    return ""
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A figure without its words.
+
+    Parameters
+    ----------
+    svg : str
+        Vector graphics to inline, trusted since drawn by this program; may be empty.
+    bitmap : str
+        A PNG as a data URI; may be empty.
+    scene : str
+        A whole HTML page with the same scene to turn; may be empty.
+    """
+
+    svg: str = ""
+    bitmap: str = ""
+    scene: str = ""
+
+
+def vector(svg: str | None) -> Drawing | None:
+    """Return a chart, its half-transparent parts written so that they stay vector graphics.
+
+    PlutoPrint composes an element with ``opacity`` and a clip as a bitmap; the same with
+    ``fill-opacity`` and ``stroke-opacity`` it draws. None stays None.
+    """
+    if svg is None:
+        return None
+    split = r"fill-opacity: \1; stroke-opacity: \1"
+    return Drawing(re.sub(r"(?<![-\w])opacity: ([\d.]+)", split, svg))
+
+
+def in_space(image: Image | None, page: str = "") -> Drawing | None:
+    """Return a picture in space; ``page`` is the same to turn. None stays None."""
+    if image is None:
+        return None
+    from designer.report.figures.overlay import png
+
+    encoded = base64.b64encode(png(image)).decode()
+    return Drawing(bitmap=f"data:image/png;base64,{encoded}", scene=page)

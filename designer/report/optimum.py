@@ -17,10 +17,9 @@ from designer.optimum.result import Optimum
 from designer.progress import SILENT, Reporter
 from designer.report import format as fmt
 from designer.report.comparison import write_comparison
-from designer.report.document import MOST_ROWS, Report, Section
+from designer.report.document import MOST_ROWS, Drawing, Report, Section, vector
 from designer.report.figures import optimum as figures
 from designer.report.phrases import paragraphs
-from designer.report.pictures import Drawing, vector
 from designer.report.render import write_pages
 from designer.report.templates import environment
 

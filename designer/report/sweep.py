@@ -16,10 +16,9 @@ from designer.analysis.result_json import evaluates_answer
 from designer.arrays import BoolArray, FloatArray
 from designer.documents.plain import csv_text
 from designer.io.output import write_whole
-from designer.report.document import Report, Section
+from designer.report.document import Report, Section, vector
 from designer.report.figures import sweep as figures
 from designer.report.figures.sweep import Axis
-from designer.report.pictures import vector
 from designer.report.render import write_pages
 
 if TYPE_CHECKING:

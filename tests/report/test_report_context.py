@@ -18,8 +18,7 @@ from designer.report.design import pose
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import design_report
 from designer.report.design.report import section as section_of
-from designer.report.document import MOST_ROWS, Report, Section
-from designer.report.pictures import Drawing
+from designer.report.document import MOST_ROWS, Drawing, Report, Section
 from designer.report.render import render_html
 from designer.report.templates import environment
 from designer.selection.result import SelectionResult

@@ -13,8 +13,8 @@ from pypdf import PdfReader
 
 import designer
 from designer.errors import InputError
-from designer.report.control import control_of
 from designer.report.design.report import design_report
+from designer.report.document import control_of
 from designer.report.render import render_html, render_pdf
 from designer.resources import data_folder
 

@@ -5,24 +5,34 @@ Beside it every template of a design report gets `shared`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from itertools import zip_longest
 
 import numpy as np
 
 from designer.analysis.analyse import Analysis
 from designer.arrays import FloatArray
+from designer.grades.grade import Grade, Size
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.report import format as fmt
 from designer.report.design.drawings import Drawings
 from designer.report.document import MOST_ROWS
+from designer.report.phrases import warmer
 from designer.report.templates import Statement, plain_statement
-from designer.study import Entry, rope_effects
+from designer.selection.candidate import Candidate
+from designer.selection.efficiency import Allowance
+from designer.selection.samples import FEW_SAMPLES
+from designer.statics.cable_loss import Fate
+from designer.study import Entry, Study, rope_effects
 
 Context = Mapping[str, object]
 
+DEAD_TURNS = 3
+"""Turns that stay on the drum; crane standards ask for two at least."""
 _MOST_PROPOSALS = 12
 """As many as a page has room for; result.json has all."""
 
@@ -38,6 +48,63 @@ def shared(drawings: Drawings) -> Context:
         "drawings": drawings,
         "most_rows": MOST_ROWS,
         "Verdict": Verdict,
+    }
+
+
+def load_cases(analysis: Analysis) -> Context | None:
+    """What the chosen rope meets in each load case; None where the study has none."""
+    study, selection = analysis.study, analysis.selection
+    needs = analysis.needs
+    if not needs and (not study.load_cases or selection is None):
+        return None
+    chosen = None if selection is None or needs else selection.chosen
+    return {
+        "needs": needs,
+        "chosen": chosen,
+        "leaves_out": study.workspace is not None and study.workspace.hangs_below == "exclude",
+        "losses": [] if chosen is None else [*_losses(chosen)],
+        "few_samples": FEW_SAMPLES,
+        "temperature_change_K": _largest_change_K(study),
+        "expansion": None if chosen is None else _expansion(study, chosen),
+    }
+
+
+def _largest_change_K(study: Study) -> float:
+    return max((abs(case.temperature_change_K or 0.0) for case in study.load_cases), default=0.0)
+
+
+def _losses(chosen: Candidate) -> Iterator[Context]:
+    """Yield what becomes of the platform at the worst pose of each case that keeps lengths."""
+    for found in chosen.cases:
+        loss = found.loss
+        if loss is None:
+            continue
+        fate, is_lost = Fate(int(loss.fate[0])), found.loaded.lost_cable is not None
+        moves = fate is Fate.RESTS_ELSEWHERE or (fate is Fate.HOLDS and not is_lost)
+        yield {
+            "case": found.case.name,
+            "cable": found.loaded.lost_cable,
+            "warmer": warmer(found.case) if found.case.temperature_change_K else "",
+            "fate": (Fate.RESTS_ELSEWHERE if moves else fate).words,
+            "moved_m": float(loss.moved_m[0]) if moves else None,
+            "rest_m": loss.rest.position_m[0],
+        }
+
+
+def _expansion(study: Study, chosen: Candidate) -> Context | None:
+    """Return how the cables grow, by which source; None where no temperature changes."""
+    cases = [case for case in study.load_cases if case.temperature_change_K]
+    if not cases:
+        return None
+    cable, given = chosen.cable, cases[0].expansion_per_K
+    per_K = cable.expansion_per_K if given is None else given
+    source = "steel" if chosen.grade.thermal_expansion is None else "table"
+    longest_m = float(chosen.verification.longest_m.max())
+    return {
+        "per_K": per_K,
+        "source": source if given is None else "study",
+        "is_fibre": chosen.grade.material_class == "fibre",
+        "paid_out_m": abs(per_K) * _largest_change_K(study) * longest_m,
     }
 
 
@@ -76,6 +143,73 @@ def clearance(analysis: Analysis) -> Context | None:
         "cable": qualities.cable.name,
         "pairs": [pair for pair in pairs if pair[1] is not None],
     }
+
+
+@dataclass(frozen=True, slots=True)
+class FabricatedCable:
+    """One cable: what it is of, and its longest and shortest unstrained length [m]."""
+
+    number: int
+    grade: Grade
+    size: Size
+    longest_m: float
+    shortest_m: float
+
+    @property
+    def turns(self) -> float:
+        """Turns of the suggested drum from the shortest to the longest length."""
+        return self.stroke_m / self.grade.drum_turn_m(self.size)
+
+    @property
+    def stroke_m(self) -> float:
+        """How far the cable runs."""
+        return self.longest_m - self.shortest_m
+
+    @property
+    def suggested_drum_m(self) -> float:
+        """Diameter of drums and sheaves that the rope's table suggests; NaN without one."""
+        ratio = self.grade.sheave_ratio
+        return math.nan if ratio is None else ratio.suggested * self.size.diameter_m
+
+    @property
+    def least_drum_m(self) -> float:
+        """The least diameter that the rope's table allows; NaN without one."""
+        ratio = self.grade.sheave_ratio
+        return math.nan if ratio is None else ratio.minimum * self.size.diameter_m
+
+    @property
+    def order_m(self) -> float:
+        """The longest length with the dead turns, rounded up to a decimetre."""
+        turn_m = self.grade.drum_turn_m(self.size)
+        dead_m = 0.0 if math.isnan(turn_m) else DEAD_TURNS * turn_m
+        return math.ceil(10.0 * (self.longest_m + dead_m)) / 10.0
+
+
+def fabrication(analysis: Analysis) -> Context | None:
+    """Lengths of each cable, and what its rope asks of drums; None without a product."""
+    cables = list(_cables(analysis))
+    if not cables:
+        return None
+    assert analysis.study.selection is not None
+    ropes: dict[tuple[str, str], list[FabricatedCable]] = {}
+    for cable in cables:
+        ropes.setdefault((cable.grade.id, cable.size.id), []).append(cable)
+    return {
+        "cables": cables,
+        "ropes": [*ropes.values()],
+        "allowance": Allowance.of(analysis.study.selection),
+        "dead_turns": DEAD_TURNS,
+    }
+
+
+def _cables(analysis: Analysis) -> Iterator[FabricatedCable]:
+    if analysis.qualities is None or not analysis.assignment.is_found:
+        return
+    verification = analysis.assignment.verification
+    lengths = zip(verification.longest_m.tolist(), verification.shortest_m.tolist(), strict=True)
+    ropes = zip(analysis.assignment.by_cable, lengths, strict=True)
+    for number, (rope, (longest_m, shortest_m)) in enumerate(ropes, start=1):
+        yield FabricatedCable(number, rope.grade, rope.size, longest_m, shortest_m)
 
 
 def proof_statement(proved: Proof) -> Statement:

@@ -4,22 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from designer.analysis.analyse import Analysis
+from designer.analysis.maps import WorkspaceMaps, workspace_maps
 from designer.analysis.rope_maps import rope_maps
 from designer.report import format as fmt
 from designer.report.captions import LITTLE, sag_matters
 from designer.report.design.carries import STEP_M, shares_of_inputs, slopes_of_moves
 from designer.report.design.pose import weight_effect
+from designer.report.document import Drawing, in_space, vector
+from designer.report.figures.charts_edge import edge_chart
+from designer.report.figures.charts_pose import loop_chart
+from designer.report.figures.charts_selection import candidates_chart, pareto_chart
+from designer.report.figures.charts_sensitivity import carries_chart, odds_chart, shares_chart
+from designer.report.figures.charts_shares import parts, served_chart, usable_chart, verdict_chart
+from designer.report.figures.colours import DIAMETER, RATIO, UTILISATION, tension_of
+from designer.report.figures.groups_plan import groups_plan
+from designer.report.figures.interactive import workspace_scene_html
+from designer.report.figures.scenes import cover_scene, robot_scene, usable_scene, workspace_scene
+from designer.report.figures.sections import clearance_map, slice_panels, stiffness_map
+from designer.report.figures.stage import Image
 from designer.report.phrases import INPUT_NAMES
-from designer.report.pictures import Drawing, in_space, vector
-
-if TYPE_CHECKING:
-    from designer.analysis.analyse import Analysis
-    from designer.analysis.maps import WorkspaceMaps
-    from designer.report.figures.stage import Image
 
 
 def chart(draw: Callable[[Drawings], str | None]) -> cached_property[Drawing | None]:
@@ -68,8 +75,6 @@ class Drawings:
         """What the figures of the workspace show; None without them."""
         if not self.draws or self.analysis.workspace is None:
             return None
-        from designer.analysis.maps import workspace_maps
-
         return workspace_maps(self.analysis)
 
     @cached_property
@@ -82,22 +87,16 @@ class Drawings:
     @chart
     def stiffness(self) -> str | None:
         """The displacement under a force, as a map in plan."""
-        from designer.report.figures.sections import stiffness_map
-
         return stiffness_map(self.analysis)
 
     @chart
     def clearance(self) -> str | None:
         """The smallest distance between cables and platform, as a map in plan."""
-        from designer.report.figures.sections import clearance_map
-
         return clearance_map(self.analysis)
 
     @chart
     def odds(self) -> str | None:
         """Histograms of the utilisation of each size, where inputs are not certain."""
-        from designer.report.figures.charts_uncertainty import odds_chart
-
         survey = self.analysis.uncertainty
         sizes = [
             (size.candidate.size.id, size.utilisation, size is survey.chosen)
@@ -109,8 +108,6 @@ class Drawings:
     @chart
     def shares(self) -> str | None:
         """The share of each input in the variance, as bars."""
-        from designer.report.figures.charts_uncertainty import shares_chart
-
         survey = self.analysis.uncertainty
         if survey is None:
             return None
@@ -119,8 +116,6 @@ class Drawings:
     @chart
     def sensitivities(self) -> str | None:
         """What changes the utilisation, as bars."""
-        from designer.report.figures.charts_carries import carries_chart
-
         carries = self.analysis.carries
         if carries is None:
             return None
@@ -134,8 +129,6 @@ class Drawings:
     @chart
     def groups(self) -> str | None:
         """The robot from above, a colour for each group of cables."""
-        from designer.report.figures.groups_plan import groups_plan
-
         choice, workspace = self.analysis.groups, self.analysis.study.workspace
         if choice is None or not choice.chosen.is_found:
             return None
@@ -145,8 +138,6 @@ class Drawings:
     @scene
     def governing(self) -> Image | None:
         """The robot in the governing pose, the cable that governs marked."""
-        from designer.report.figures.scenes import robot_scene
-
         pose = self.analysis.governing
         if pose is None:
             return None
@@ -156,8 +147,6 @@ class Drawings:
     @scene
     def robot(self) -> Image | None:
         """The robot in the configured pose."""
-        from designer.report.figures.scenes import robot_scene
-
         pose = self.analysis.pose
         if pose is None:
             return None
@@ -169,8 +158,6 @@ class Drawings:
     @chart
     def loop(self) -> str | None:
         """The iterations as curves; None where they would be flat."""
-        from designer.report.figures.charts_pose import loop_chart
-
         pose = self.analysis.pose
         if pose is None or not pose.loop.iterates:
             return None
@@ -186,9 +173,6 @@ class Drawings:
 
     @scene
     def _region_on_first_page(self) -> Image | None:
-        from designer.report.figures.colours import DIAMETER, UTILISATION
-        from designer.report.figures.scenes import cover_scene
-
         maps = self.rope_maps or self.maps
         assert maps is not None
         return cover_scene(maps, DIAMETER if self.analysis.ropes is None else UTILISATION)
@@ -199,17 +183,11 @@ class Drawings:
         maps = self.maps
         if maps is None or not self.draws_scenes:
             return None
-        from designer.report.figures.interactive import workspace_scene_html
-        from designer.report.figures.scenes import workspace_scene
-
         return in_space(workspace_scene(maps), workspace_scene_html(maps))
 
     @chart
     def of_ropes(self) -> str | None:
         """Maps of the utilisation of the ropes of the answer, and of tension or what sag adds."""
-        from designer.report.figures.colours import RATIO, UTILISATION, tension_of
-        from designer.report.figures.sections import slice_panels
-
         maps = self.rope_maps
         if maps is None:
             return None
@@ -219,9 +197,6 @@ class Drawings:
     @chart
     def of_family(self) -> str | None:
         """Maps of what the configured family needs: diameter, tension, and what sag adds to it."""
-        from designer.report.figures.colours import DIAMETER, RATIO, tension_of
-        from designer.report.figures.sections import slice_panels
-
         maps = self.maps
         if maps is None:
             return None
@@ -231,22 +206,16 @@ class Drawings:
     @chart
     def edge(self) -> str | None:
         """The needed diameter from the centre of the region outward."""
-        from designer.report.figures.charts_edge import edge_chart
-
         return None if self.maps is None else edge_chart(self.maps)
 
     @chart
     def served(self) -> str | None:
         """The share of the poses over the diameter."""
-        from designer.report.figures.charts_shares import served_chart
-
         return None if self.maps is None else served_chart(self.maps.served)
 
     @chart
     def verdicts(self) -> str | None:
         """The samples by verdict; None for a single one, of which the words say enough."""
-        from designer.report.figures.charts_shares import parts, verdict_chart
-
         workspace = self.analysis.workspace
         if workspace is None or len(parts(workspace.census)) < 2:
             return None
@@ -255,8 +224,6 @@ class Drawings:
     @chart
     def pareto(self) -> str | None:
         """Every size that holds, by what sizes are compared by; None where one alone is left."""
-        from designer.report.figures.charts_selection import pareto_chart
-
         selection = self.analysis.selection
         if selection is None or len(selection.front) < 2:
             return None
@@ -265,8 +232,6 @@ class Drawings:
     @chart
     def grades(self) -> str | None:
         """Sizes and need of each grade; None where no grade has a diameter that would do."""
-        from designer.report.figures.charts_selection import candidates_chart
-
         selection = self.analysis.selection
         if selection is None:
             return None
@@ -277,8 +242,6 @@ class Drawings:
     @scene
     def layers(self) -> Image | None:
         """The part of the region that each size of a grade serves; None where all serve alike."""
-        from designer.report.figures.scenes import usable_scene
-
         selection, maps = self.analysis.selection, self.maps
         usable = None if selection is None else selection.usable
         if usable is None or not usable.differs or maps is None:
@@ -288,8 +251,6 @@ class Drawings:
     @chart
     def usable(self) -> str | None:
         """The same as a curve, where there are no layers."""
-        from designer.report.figures.charts_shares import usable_chart
-
         selection = self.analysis.selection
         usable = None if selection is None else selection.usable
         if selection is None or usable is None or not usable.differs or self.layers is not None:

@@ -5,21 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from designer.analysis.analyse import Analysis
-from designer.report.control import control_of
-from designer.report.design import (
-    carries,
-    checks,
-    contexts,
-    load_cases,
-    pose,
-    selection,
-    workspace,
-)
+from designer.report.design import carries, checks, contexts, pose, selection, workspace
 from designer.report.design.contexts import Context, shared
 from designer.report.design.drawings import Drawings
 from designer.report.design.first_page import first_page
-from designer.report.design.workshop import fabrication
-from designer.report.document import Report, Section
+from designer.report.document import Report, Section, control_of
 
 SECTIONS: tuple[tuple[str, Callable[[Analysis], Context | None]], ...] = (
     ("answer", first_page),
@@ -27,13 +17,13 @@ SECTIONS: tuple[tuple[str, Callable[[Analysis], Context | None]], ...] = (
     ("checks", checks.requirements),
     ("carries", carries.sensitivities),
     ("uncertainty", contexts.uncertainty),
-    ("load-cases", load_cases.load_cases),
+    ("load-cases", contexts.load_cases),
     ("workspace", workspace.workspace),
     ("selection", selection.selection),
     ("groups", contexts.groups),
     ("stiffness", contexts.stiffness),
     ("clearance", contexts.clearance),
-    ("workshop", fabrication),
+    ("workshop", contexts.fabrication),
     ("proof", contexts.proof),
     ("pose", pose.pose),
     ("family", workspace.family),

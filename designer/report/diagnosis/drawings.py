@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from designer.diagnosis.result import Diagnosis
 from designer.diagnosis.structure import Carrier
-from designer.report.pictures import Drawing, vector
-
-if TYPE_CHECKING:
-    from designer.report.figures.diagnosis import Layout
+from designer.report.document import Drawing, vector
+from designer.report.figures.diagnosis import Layout, carriers_chart, errors_chart, rows_chart
 
 _MOST = 4
 """Panels side by side that are still wide enough to be read."""
@@ -28,15 +25,11 @@ class Drawings:
     @cached_property
     def errors(self) -> Drawing | None:
         """The error at each stage."""
-        from designer.report.figures.diagnosis import errors_chart
-
         return vector(errors_chart(self._diagnosis))
 
     @cached_property
     def rows(self) -> Drawing | None:
         """The residual of every reading over the rows."""
-        from designer.report.figures.diagnosis import rows_chart
-
         return vector(rows_chart(self._diagnosis))
 
     @cached_property
@@ -66,7 +59,5 @@ class Drawings:
         return self._carriers(carriers, "diagnosis-left", "after")
 
     def _carriers(self, carriers: Sequence[Carrier], key: str, layout: Layout) -> Drawing | None:
-        from designer.report.figures.diagnosis import carriers_chart
-
         names = [carrier.name for carrier in carriers]
         return vector(carriers_chart(self._diagnosis, names, key, layout)) if names else None

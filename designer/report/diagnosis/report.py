@@ -9,11 +9,10 @@ from designer.analysis.provenance import Provenance
 from designer.diagnosis.check import Check
 from designer.diagnosis.result import Diagnosis
 from designer.report import format as fmt
-from designer.report.control import control_of
 from designer.report.diagnosis import contexts
 from designer.report.diagnosis.contexts import Context, shared
 from designer.report.diagnosis.quantity import kinds
-from designer.report.document import MOST_ROWS, Report, Section
+from designer.report.document import MOST_ROWS, Report, Section, control_of
 from designer.report.render import write_pages
 from designer.report.templates import Statement, plain_statement
 
