@@ -182,19 +182,21 @@ def verify_sizes(
     with the samples. ``progress`` is called with the number of samples done.
 
     With ``gives_up``, a cable is left alone after the first chunk of samples with one that it
-    cannot hold, which settles that it does not serve the workspace; of a robot that is slow to
-    solve also after the first chunk in which it goes beyond its allowable tension.
+    cannot hold, or that takes it beyond its allowable tension, which settles that it does not serve
+    the workspace.
     """
     # The heavy ones first: slack cables are the harder, and start best from slack ones.
     order = sorted(range(len(cables)), key=lambda k: -cables[k].weight_N_per_m)
     space, is_slow = workspace.space, not is_quick(robot)
     totals = _Totals(len(cables), robot.n_cables, space.n_coordinates)
     samples = ((places, True) for places in workspace.places())
-    chunk_size = 2**9 if is_slow else 2**13
+    chunk_size = 2**9 if is_slow else 2**11
     for chunk, counts in chain([(space.landmarks(), False)], samples):
         for start in range(0, len(chunk), chunk_size):
             places = chunk[start : start + chunk_size]
-            settled = (totals.not_held > 0) | (is_slow & (totals.utilisation.max(axis=1) > 1.0))
+            settled = totals.not_held > 0
+            if is_slow or totals.samples:  # else landmarks alone would stand for the samples
+                settled |= totals.utilisation.max(axis=1) > 1.0
             alive = [k for k in order if not (gives_up and settled[k])]
             x, y, z, turn = space.cells(places, _CELLS_A_SIDE).T
             cells = ((x * _CELLS_A_SIDE + y) * _CELLS_A_SIDE + z) * _TURNS + turn % _TURNS
@@ -271,10 +273,10 @@ class _Totals:
 
     def add(self, rows: Sequence[int], positions: FloatArray, meets: Meets, counts: bool) -> None:
         self.tried[rows] += len(positions) * counts
-        higher = meets.utilisation > self.utilisation[rows]
-        self.utilisation[rows] = np.where(higher, meets.utilisation, self.utilisation[rows])
-        at_worst = positions[meets.pose]
-        self.worst_places[rows] = np.where(higher[..., None], at_worst, self.worst_places[rows])
+        row, cell = np.nonzero(meets.utilisation > self.utilisation[rows])
+        higher = np.asarray(rows)[row], cell
+        self.utilisation[higher] = meets.utilisation[row, cell]
+        self.worst_places[higher] = positions[meets.pose[row, cell]]
         self.longest_m[rows] = np.maximum(self.longest_m[rows], meets.longest_m)
         self.counted[rows] += meets.counted * counts
         self.overloaded[rows] += meets.overloaded * counts

@@ -35,8 +35,12 @@ _APART = 0.025
 """Between starts about the end of a climb, as a share of the space."""
 _CLOSE = 0.01
 """Relative: how far an end may stay below the best to be one of the highest."""
+_REACHED = 2.0
+"""How much a climb may still rise, over what the first part brought to any of its extreme."""
 _MOST_TURNS = 200
 """A demand that grows in ever smaller steps, as at the edge of what can be held, has no end."""
+_SHRINKS_AT_CORNER = 0.1
+"""Of a cloud about a landmark of the space where nothing rises; a turn tries a factor of 30."""
 _MOST_ROUNDS = 8
 _NEAR_SCALES = 10.0 ** -np.arange(1.0, 8.0)
 
@@ -66,7 +70,7 @@ class Effort:
     revisited: int = 3  # The highest ends, about which starts closer together are tried
     beside: int = 4  # Such starts about each of them at most
     tried_beside: int = 128  # Places of which they are the largest
-    trials: int = 26  # Random places tried about each in a turn, beside those along the coordinates
+    trials: int = 4  # Random places tried about each in a turn for each coordinate, beside its ends
     # Whether each landmark is a start, rather than only those that nothing near them exceeds
     from_landmarks: bool = True
     tolerance: float = 1e-9  # Size of the last cloud, as a share of the space
@@ -81,7 +85,6 @@ LIGHT = Effort(
     revisited=1,
     beside=2,
     tried_beside=32,
-    trials=12,
     from_landmarks=False,
     tolerance=1e-7,
 )
@@ -241,6 +244,8 @@ class _PoseSearch:
         self._size = np.ptp(space.bounds, axis=0)
         self._best = np.empty((count, 0))
         self._best_places = np.empty((count, 0, len(self._size)))
+        self._has_border = np.zeros(count, dtype=np.bool_)
+        self._marks = space.landmarks()
         self._phase = 0
 
     def run(self, starts: Sequence[FloatArray]) -> list[list[Worst]]:
@@ -249,8 +254,7 @@ class _PoseSearch:
             points = np.concatenate(list(map(space.places, space.region.samples_m(1, "grid", 0))))
             self._ask_each([points] * self._count, every)
             return self._worsts
-        marks = space.landmarks()
-        common = np.concatenate([marks, self._scatter(0)])
+        common = np.concatenate([marks := self._marks, self._scatter(0)])
         places = [np.concatenate([of_search, common]) for of_search in starts]
         values = self._ask_each(places, every)
         landmarks = [len(of_search) + np.arange(len(marks)) for of_search in starts]
@@ -309,6 +313,7 @@ class _PoseSearch:
         parts = [slice(at, at + _CHUNK) for at in range(0, len(places), _CHUNK)]
         values = np.concatenate([self._demand(places[part], search[part]) for part in parts])
         values = values.reshape(len(places), -1)
+        self._has_border[search[np.isneginf(values).any(axis=1)]] = True
         if not self._best.size:
             self._best = np.full((self._count, values.shape[1]), -np.inf)
             self._best_places = np.full((*self._best.shape, len(self._size)), np.nan)
@@ -347,7 +352,7 @@ class _PoseSearch:
         at, value = np.concatenate(starts), np.concatenate(demands)
         climbs = _Climbs.beginning(search, extreme, at, value, 0.5 / CELLS_A_SIDE)
         self._climb(climbs, 1e-3)
-        climbs = self._finalists(climbs)
+        climbs = self._finalists(climbs.part(self._in_reach(climbs, climbs.value - value)))
         self._climb(climbs, effort.tolerance, slides=True)
         beside = self._beside(climbs)
         self._climb(beside, 1e-3)
@@ -390,6 +395,19 @@ class _PoseSearch:
         is_close = climbs.value > best - _CLOSE * np.abs(best)
         return np.asarray(is_close & (rank < self._effort.revisited))
 
+    def _in_reach(self, climbs: _Climbs, rise: FloatArray) -> IntArray:
+        """Return the climbs that may still become the highest of their extreme.
+
+        None rises more from here on than twice what the first part of any has brought; along the
+        border of what counts, where climbs slide later, anything may follow.
+        """
+        best = self._best[climbs.search, climbs.extreme]
+        reach = np.zeros(climbs.kind.max(initial=0) + 1)
+        np.maximum.at(reach, climbs.kind, rise)
+        margin = np.maximum(_REACHED * reach[climbs.kind], _CLOSE * np.abs(best))
+        is_open = self._has_border[climbs.search]
+        return np.flatnonzero(is_open | (climbs.value >= best - margin))
+
     def _finalists(self, climbs: _Climbs) -> _Climbs:
         """Leave out climbs that have come to the same place as a better one, or stay far behind."""
         size = np.where(self._size > 0.0, self._size, 1e-300)
@@ -407,6 +425,7 @@ class _PoseSearch:
     def _climb(self, climbs: _Climbs, tolerance: float, *, slides: bool = False) -> None:
         """Climb until the clouds are smaller than the tolerance, along what does not count."""
         self._phase += 1
+        is_corner = self._are_marks(climbs.at)
         for turn in range(_MOST_TURNS):
             active = np.flatnonzero((climbs.radius > tolerance) & ~self._is_over[climbs.search])
             if not len(active):
@@ -430,7 +449,13 @@ class _PoseSearch:
             climbs.step[active] = to - climb.at
             climbs.at[active] = to
             climbs.value[active] = np.where(better, demand[rows, highest], climb.value)
-            climbs.radius[active] = climb.radius * np.where(better, 1.1, 0.5)
+            is_corner[active] &= ~better
+            shrinks = np.where(is_corner[active], _SHRINKS_AT_CORNER, 0.5)
+            climbs.radius[active] = climb.radius * np.where(better, 1.1, shrinks)
+
+    def _are_marks(self, at: FloatArray) -> BoolArray:
+        """Tell which places are landmarks; what is largest there hardly is by chance."""
+        return (at[:, None] == self._marks).all(axis=2).any(axis=1)
 
     def _ask_about(self, climbs: _Climbs, places: FloatArray) -> FloatArray:
         """Return each climb's own demand (n_climbs, …) at places (n_climbs, …, n_coordinates)."""
@@ -485,7 +510,8 @@ class _PoseSearch:
         Random lengths span a factor of 30, so that one turn tries several scales.
         """
         free = self._size > 0.0
-        n, trials = int(free.sum()), self._effort.trials
+        n = int(free.sum())
+        trials = n * self._effort.trials
         random = rng.uniform(-1.0, 1.0, (trials, n)) * 30.0 ** -rng.random((trials, 1))
         directions = np.zeros((2 * n + trials, len(free)))
         directions[:, free] = np.concatenate([np.eye(n), -np.eye(n), random])

@@ -102,7 +102,7 @@ def test_chunks_add_up(fast_robot) -> None:
     """More samples than one chunk has give the largest of all, and all counts."""
     workspace, tried = Workspace(LOW, samples=20_000), cables()[2:5]
     positions = np.concatenate(list(workspace.positions_m()))
-    found = verify_sizes(fast_robot, workspace, tried)
+    found = verify_sizes(fast_robot, workspace, tried, gives_up=False)
     for cable, one in zip(tried, found, strict=True):
         tension = solve_sagging(fast_robot, Poses.at(positions), cable).largest_tension_N
         corners = solve_sagging(fast_robot, Poses.at(workspace.space.landmarks()), cable)
@@ -110,6 +110,16 @@ def test_chunks_add_up(fast_robot) -> None:
         assert one.counted == one.samples == 20_000
         assert one.overloaded == (tension > cable.allowable_tension_N).sum()
         assert one.utilisation == pytest.approx(largest / cable.allowable_tension_N)
+
+
+def test_a_size_that_is_too_thin_is_left_alone_after_a_chunk(fast_robot) -> None:
+    workspace, tried = Workspace(LOW, samples=5000), cables()
+    whole = verify_sizes(fast_robot, workspace, tried, gives_up=False)
+    for one, every in zip(verify_sizes(fast_robot, workspace, tried), whole, strict=True):
+        assert one.is_complete == (one.utilisation <= 1.0) == (every.utilisation <= 1.0)
+        assert 0 < one.samples <= every.samples == 5000
+        assert one.utilisation <= every.utilisation
+        assert one.utilisation == every.utilisation or one.utilisation > 1.0
 
 
 def test_pose_outside_the_hull_ends_every_cable(fast_robot) -> None:
