@@ -13,12 +13,9 @@ from markupsafe import Markup
 
 from designer.analysis.comparison import ComparisonLine
 from designer.arrays import FloatArray
-from designer.grades.grade import Grade
-from designer.model.load_case import LoadCase, Wind
 from designer.model.region import Region
-from designer.model.requirement import Requirement, State
+from designer.model.requirement import State
 from designer.model.space import Orientations
-from designer.model.uncertainty import Input, Normal, Spread
 from designer.report import format as fmt
 from designer.selection.assignment import Assignment
 from designer.study import Study
@@ -54,15 +51,6 @@ def described_region(region: Region) -> str:
         return words
     low, high = region.bounds_m[:, 2]
     return f"{words}, z from {fmt.metres(low)} to {fmt.metres(high)}"
-
-
-def in_first_orientation(study: Study) -> str:
-    """Return in which orientation a map over positions is drawn; empty where there is one only."""
-    if study.workspace is None or study.workspace.orientations.is_level:
-        return ""
-    if study.workspace.orientations.range_rad is not None:
-        return ", in the middle of the range of orientations"
-    return ", in the first of the orientations" if study.workspace.orientations.count > 1 else ""
 
 
 def known(value: float, decimals: int) -> str:
@@ -104,67 +92,6 @@ def shown_time(moment: datetime) -> str:
     return moment.strftime("%Y-%m-%d %H:%M %z").strip()
 
 
-_PARTS: dict[str, Callable[[LoadCase], bool]] = {
-    "dynamic factor": lambda case: case.dynamic_factor > 1.0,
-    "acceleration": lambda case: case.acceleration_m_per_s2 > 0.0,
-    "wind": lambda case: case.wind is not None,
-    "ice": lambda case: case.ice is not None,
-    "loss of a cable": lambda case: case.cable_lost is not None,
-    "change of temperature": lambda case: bool(case.temperature_change_K),
-}
-"""What a load case can have, for what none of a study has."""
-
-
-def lacking_loads(study: Study) -> list[str]:
-    """Return the kinds of load that are in none of the load cases."""
-    return [name for name, has in _PARTS.items() if not any(map(has, study.load_cases))]
-
-
-def _from(wind: Wind) -> str:
-    if wind.direction is not None:
-        return "in one direction"
-    return "from its worst direction" if wind.count is None else f"in {wind.count} directions"
-
-
-def changes_of_case(case: LoadCase) -> str:
-    """Return what a load case changes of the study."""
-    parts = []
-    if case.mass_kg is not None:
-        parts.append(f"platform of {fmt.kilograms(case.mass_kg)}")
-    if case.wrench_N is not None:
-        force = ", ".join(fmt.trimmed(float(x)) for x in case.wrench_N)
-        parts.append(f"wrench ({force})\u00a0N, N·m")
-    if case.dynamic_factor > 1.0:
-        parts.append(f"dynamic factor {fmt.trimmed(case.dynamic_factor)}")
-    if case.acceleration_m_per_s2 > 0.0:
-        parts.append(f"acceleration {fmt.trimmed(case.acceleration_m_per_s2)}\u00a0m/s²")
-    if case.wind is not None:
-        speed = f"{fmt.trimmed(case.wind.speed_m_per_s)}\u00a0m/s"
-        pressure = f"{fmt.trimmed(case.wind.pressure_Pa)}\u00a0Pa"
-        parts.append(f"wind of {speed} {_from(case.wind)}, pressure {pressure}")
-    if case.ice is not None:
-        parts.append(f"ice {fmt.millimetres(case.ice.thickness_m)} thick around the cables")
-    if case.temperature_change_K:
-        parts.append(f"cables {warmer(case)}, winches braked")
-    if case.cable_lost is not None:
-        which = "each cable in turn" if case.cable_lost == "each" else f"cable {case.cable_lost}"
-        parts.append(f"{which} lost")
-    if case.safety_factor is not None:
-        parts.append(f"safety factor {fmt.trimmed(case.safety_factor)}")
-    if case.termination_efficiency is not None:
-        parts.append(f"end fittings keep {fmt.percent(case.termination_efficiency)}")
-    if case.region is not None:
-        low, high = case.region.bounds_m
-        parts.append(f"platform between {fmt.position(low)} and {fmt.position(high)}")
-    return fmt.capital("; ".join(parts)) or "Nothing: the static load"
-
-
-def warmer(case: LoadCase) -> str:
-    """Return a change of temperature such as ``30 K warmer``."""
-    change = case.temperature_change_K or 0.0
-    return f"{fmt.trimmed(abs(change))}\u00a0K {'warmer' if change > 0.0 else 'colder'}"
-
-
 def angle(angle_rad: float) -> str:
     """Return an angle such as ``41.3°``."""
     return f"{fmt.fixed(math.degrees(angle_rad), 1)}°"
@@ -195,18 +122,6 @@ def with_unit(value: float, unit: str) -> str:
     return f"{fmt.trimmed(value)}\u00a0{unit}".rstrip()
 
 
-def place_of_requirement(requirement: Requirement) -> str:
-    """Return load case, direction, cable and place where a requirement is nearest to failing."""
-    parts = [requirement.load_case]
-    if requirement.direction:
-        parts.append(fmt.printed(requirement.direction))
-    if requirement.cable is not None:
-        parts.append(f"cable {requirement.cable}")
-    if requirement.place is not None:
-        parts.append(f"at {fmt.position(requirement.place[:3])}")
-    return ", ".join(parts)
-
-
 def described_orientations(orientations: Orientations) -> str:
     """Return in words how the platform is turned at every position."""
     if orientations.is_level:
@@ -233,11 +148,6 @@ def orientation_words(study: Study) -> tuple[str, str] | None:
     return described_orientations(orientations), how
 
 
-def product_name(grade: Grade) -> str:
-    """Return product and maker in one line."""
-    return f"{grade.product}, maker {grade.manufacturer}"
-
-
 def lengths(length_m: FloatArray) -> str:
     """Return lengths as the fabrication data give them; one where all are equal."""
     each = [fmt.fixed(float(length), 2) for length in length_m]
@@ -250,11 +160,6 @@ def assigned_ropes(assignment: Assignment) -> str:
         return f"Ropes of {assignment.ropes[0].label} for all groups"
     pairs = zip(assignment.groups, assignment.ropes, strict=True)
     return fmt.listing(f"{rope.label} for {group.name}" for group, rope in pairs)
-
-
-def lower_first(text: str) -> str:
-    """Return a title as it stands within a sentence."""
-    return text[:1].lower() + text[1:]
 
 
 def rounded_up(share: float) -> float:
@@ -382,18 +287,3 @@ def interval(ends: tuple[float, float]) -> str:
     """Return the confidence interval of a share."""
     low, high = (min(max(end, 0.0), 1.0) for end in ends)
     return f"{fmt.fixed(100.0 * low, 1)} to {fmt.fixed(100.0 * high, 1)}\u00a0%"
-
-
-def distribution(spread: Spread, name: Input) -> str:
-    """Return the distribution of an input in words."""
-
-    def deviation(value: float) -> str:
-        if name == "exit_points":
-            return f"{fmt.trimmed(1e3 * value)}\u00a0mm"
-        return f"{fmt.trimmed(100.0 * value)}\u00a0%"
-
-    if isinstance(spread, Normal):
-        return f"normal, standard deviation {deviation(spread.standard_deviation)}"
-    if spread.low == -spread.high:
-        return f"±\u00a0{deviation(spread.high)}, uniform"
-    return f"{deviation(spread.low)} to {deviation(spread.high)}, uniform"

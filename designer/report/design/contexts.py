@@ -21,7 +21,6 @@ from designer.proof.prove import Proof
 from designer.report import format as fmt
 from designer.report.design.drawings import Drawings
 from designer.report.document import MOST_ROWS
-from designer.report.phrases import warmer
 from designer.report.templates import Statement, plain_statement
 from designer.selection.candidate import Candidate
 from designer.selection.efficiency import Allowance
@@ -84,7 +83,7 @@ def _losses(chosen: Candidate) -> Iterator[Context]:
         yield {
             "case": found.case.name,
             "cable": found.loaded.lost_cable,
-            "warmer": warmer(found.case) if found.case.temperature_change_K else "",
+            "change_K": found.case.temperature_change_K,
             "fate": (Fate.RESTS_ELSEWHERE if moves else fate).words,
             "moved_m": float(loss.moved_m[0]) if moves else None,
             "rest_m": loss.rest.position_m[0],

@@ -17,7 +17,7 @@ from designer.model.requirement import Requirement, State
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.design.checks import unmet_by_title
-from designer.report.phrases import lacking_loads, orientation_words
+from designer.report.phrases import orientation_words
 from designer.selection.candidate import Candidate
 from designer.selection.efficiency import Allowance
 from designer.selection.objectives import MEANINGS
@@ -262,7 +262,6 @@ def _sureness(analysis: Analysis, findings: Findings) -> Context:
     modulus = findings.modulus_utilisation
     return {
         "pose_outside": outside_pose(analysis),
-        "lacking_loads": lacking_loads(study),
         "acting_effects": [name for name in ids if name not in idle],
         "idle_effects": [name for name in ids if name in idle],
         "rope_effects": rope_effects(study),
