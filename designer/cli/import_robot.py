@@ -89,8 +89,7 @@ def import_robot(
     Exit status 0: the study is whole. 1: it is written, and something is to be filled in. 2: the
     input is wrong or no study can hold such a robot, and nothing is written.
     """
-    from designer.foreign.read import read_foreign
-    from designer.foreign.study import ImportAnswers, gaps, study_text
+    from designer.foreign.study import ImportAnswers, gaps, read_foreign, study_text
     from designer.io.output import write_new_file
     from designer.plugins.find import find_plugins
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.as_json import check_dict
-from designer.diagnosis.case import case_of
+from designer.diagnosis.case import case_of, first_noise
 from designer.diagnosis.errors_of import (
     Foretold,
     Interval,
@@ -21,7 +21,6 @@ from designer.diagnosis.errors_of import (
 )
 from designer.diagnosis.fit import fit
 from designer.diagnosis.hold import structure_left
-from designer.diagnosis.noise import first_noise
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import block_of
 from designer.diagnosis.structure import Structure

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import BoolArray
-from designer.diagnosis.case import Case, case_of
+from designer.diagnosis.case import Case, case_of, first_noise, rescaled
 from designer.diagnosis.errors_of import Stage, foretell, outliers_of, stage, with_sound_lengths
 from designer.diagnosis.fit import Fit, fit, with_places
 from designer.diagnosis.free_poses import FreePredictor, taken_up
@@ -19,12 +19,9 @@ from designer.diagnosis.hold import (
     search_and_hold,
     structure_left,
 )
-from designer.diagnosis.noise import first_noise, rescaled
-from designer.diagnosis.problem import Problem
-from designer.diagnosis.propose import Proposal, propose
-from designer.diagnosis.readings import imbalance_of
+from designer.diagnosis.problem import Problem, imbalance_of
 from designer.diagnosis.result import Diagnosis, Estimate, Finding
-from designer.diagnosis.search import without
+from designer.diagnosis.search import Proposal, propose, without
 from designer.diagnosis.statistics import heldout_rows, without_outliers
 from designer.diagnosis.structure import covariates_of, smooth_correction, whereabouts
 from designer.effects.effect import Effect

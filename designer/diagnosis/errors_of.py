@@ -13,8 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
-from designer.diagnosis.problem import Problem, channel_names
-from designer.diagnosis.readings import added_force_N
+from designer.diagnosis.problem import Problem, added_force_N, channel_names
 from designer.diagnosis.statistics import block_of, is_outlier, rms, without_outliers
 from designer.effects.effect import Setting
 from designer.model.robot import Poses

@@ -16,8 +16,7 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import HUBER, huber, jacobian, starting_vector
-from designer.diagnosis.problem import Kind, Predictor, Problem, kind_of
-from designer.diagnosis.readings import readings_of
+from designer.diagnosis.problem import Kind, Predictor, Problem, kind_of, readings_of
 from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.effects.effect import Effect, Readings, Setting, frame_size_m
 from designer.model.machine import Machine

@@ -11,8 +11,7 @@ from typing import Any
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.as_json import diagnosis_dict
 from designer.diagnosis.errors_of import Foretold, Outlier, Stage
-from designer.diagnosis.propose import Proposal
-from designer.diagnosis.search import Step
+from designer.diagnosis.search import Proposal, Step
 from designer.diagnosis.structure import Correction, Structure, Whereabouts
 from designer.documents.plain import json_text
 from designer.effects.effect import Effect, Readings, Setting

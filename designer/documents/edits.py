@@ -11,8 +11,7 @@ import textwrap
 from collections.abc import Sequence
 from typing import Any
 
-from designer.documents.document import Composer
-from designer.documents.node import Key, Node
+from designer.documents.document import Composer, Key, Node
 
 _PLAIN = re.compile(r"[+-]?[\w.°][\w.°²³·^*/%()+-]*(?: [\w.°/(][\w.°²³·^*/%()+-]*)*")
 """Words, numbers and units, without a letter that means something to YAML."""

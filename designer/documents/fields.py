@@ -15,8 +15,8 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from designer.documents.bounds import BOUNDS
+from designer.documents.document import printable
 from designer.documents.formats import why_unreadable
-from designer.documents.node import printable
 from designer.units import (
     NUMBER,
     Dimension,

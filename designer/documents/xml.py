@@ -11,7 +11,7 @@ from typing import NoReturn
 from xml.sax.handler import ContentHandler
 from xml.sax.xmlreader import AttributesImpl, InputSource, Locator
 
-from designer.documents.node import printable
+from designer.documents.document import printable
 from designer.documents.opened import read_bytes
 from designer.errors import InputError
 

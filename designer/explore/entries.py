@@ -8,7 +8,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.documents import edits
-from designer.documents.node import Key, path_text
+from designer.documents.document import Key, path_text
 from designer.explore.fields import Field, keys_of
 from designer.explore.reading import Reading
 

@@ -12,14 +12,14 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel
 
+from designer.documents.document import Key, Node, path_text
 from designer.documents.fields import QuantityField, WholeNumber, reader_in
-from designer.documents.node import Key, Node, path_text
 from designer.documents.section import words_at
 from designer.effects.effect import Effect
 from designer.explore.sliders import Sizes, count_slider, slider
 from designer.io.config.effects import field_of, read_effects
 from designer.io.config.entries import field_node
-from designer.io.config.orientation import FORMS
+from designer.io.config.regions import FORMS
 from designer.io.config.schema import StudySection
 from designer.units import FORCE, MOMENT, NUMBER, Dimension, format_SI, read_quantity
 

@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.diagnosis.case import case_of
+from designer.diagnosis.case import case_of, first_noise
 from designer.diagnosis.diagnose import diagnose_study
-from designer.diagnosis.noise import first_noise
 from designer.diagnosis.problem import Problem, channel_names
 from designer.explore.question import Question
 from designer.io.diagnosis_files import diagnosed_config

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from designer.documents.document import Key
 from designer.documents.fields import QuantityField
-from designer.documents.node import Key
 from designer.io.config.schema import StudySection
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.units import ANGLE, FORCE, LENGTH, MOMENT, TEMPERATURE

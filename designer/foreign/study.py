@@ -1,14 +1,17 @@
-"""A foreign robot as a commented study; what its file does not say is marked for the user."""
+"""A robot of whatever program's file as a commented study; what the file does not say is marked."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
+from designer.documents.xml import read_xml
 from designer.errors import InputError
+from designer.foreign import caspr, wirex
 from designer.foreign.robot import ForeignRobot, Point
 from designer.units import DENSITY, FORCE, MASS, STRESS, format_SI
 
@@ -246,3 +249,31 @@ def _number(value: float) -> str:
 
 def _list(values: tuple[float, ...]) -> str:
     return f"[{', '.join(map(_number, values))}]"
+
+
+def read_foreign(
+    path: Path, other: Path | None = None, cable_set: str | None = None
+) -> ForeignRobot:
+    """Return the robot of a CASPR model (either file of it) or of a WireX file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    other : Path or None
+        The other file of a CASPR model; None for the one beside it.
+    cable_set : str or None
+        Which set of cables of a CASPR model; None for the file's default.
+
+    Raises
+    ------
+    InputError
+        If a file is missing or faulty, is of another kind, or no study can hold such a robot.
+    """
+    root = read_xml(path)
+    if root.tag in caspr.ROOTS:
+        return caspr.read_caspr(path, root, other, cable_set)
+    if root.tag != wirex.ROOT:
+        roots = f"<{'>, <'.join(caspr.ROOTS)}> of CASPR or <{wirex.ROOT}> of WireX"
+        root.refuse(f"the file holds <{root.tag}>", roots)
+    return wirex.read_wirex(path, root)

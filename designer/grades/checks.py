@@ -14,7 +14,7 @@ from itertools import pairwise
 from typing import get_args
 
 from designer.documents.bounds import BOUNDS
-from designer.documents.node import Flaw, Keys
+from designer.documents.document import Flaw, Keys
 from designer.grades.grade import Grade, RopeMaterial, Trust
 from designer.grades.parts import Basis, ComputedColumn, ReferenceArea
 from designer.grades.proportions import proportion_flaws, within

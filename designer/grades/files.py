@@ -12,8 +12,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from designer.documents.document import GRADE, read_document
-from designer.documents.faults import schema_faults
-from designer.documents.section import reader_of
+from designer.documents.section import reader_of, schema_faults
 from designer.errors import Fault, InputError
 from designer.grades.checks import find_flaws
 from designer.grades.grade import Grade, GradeSheet

@@ -31,13 +31,14 @@ from designer.grades.parts import (
     Line,
     Lines,
     Modulus,
+    RelativeStiffness,
     SheaveRatio,
+    StiffnessSection,
     ThermalExpansion,
     Units,
     figure,
 )
 from designer.grades.parts import Reference as Reference  # noqa: PLC0414  # plugins take it from here
-from designer.grades.stiffness import RelativeStiffness, StiffnessSection
 from designer.model.cable import STEEL_EXPANSION_PER_K, Cable, Material
 
 Trust = Literal["A", "B", "C"]

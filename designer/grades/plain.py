@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from designer.errors import described, one_line
-from designer.grades import parts, stiffness
+from designer.grades import parts
 from designer.grades.grade import Grade, Size
 
 _KINDS: dict[str, Any] = {
@@ -17,7 +17,7 @@ _KINDS: dict[str, Any] = {
     for kind in (
         Grade, Size, parts.AreaFactor, parts.ComputedFigure, parts.Limits, parts.Modulus,
         parts.Reference, parts.SheaveRatio, parts.ThermalExpansion, parts.Units,
-        stiffness.RelativeStiffness,
+        parts.RelativeStiffness,
     )
 }  # fmt: skip
 """What a grade is made of."""

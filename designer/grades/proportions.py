@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from statistics import median
 
-from designer.documents.node import Flaw
+from designer.documents.document import Flaw
 from designer.grades.grade import Grade, Size
 
 

@@ -10,7 +10,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from designer.documents.node import path_text
+from designer.documents.document import path_text
 from designer.errors import Fault, InputError, described, one_line
 from designer.grades.checks import find_flaws
 from designer.grades.files import id_fault, read_grades

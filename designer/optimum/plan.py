@@ -12,13 +12,11 @@ from pydantic import Field, ValidationError
 
 from designer.arrays import FloatArray
 from designer.documents import edits
-from designer.documents.document import Document, FileKind, decode, document_of
+from designer.documents.document import Document, FileKind, Key, decode, document_of
 from designer.documents.document import read_document as read_file
-from designer.documents.faults import schema_faults
 from designer.documents.fields import FreeMapping, QuantityField, Text, WholeNumber
-from designer.documents.node import Key
 from designer.documents.opened import read_bytes
-from designer.documents.section import Section
+from designer.documents.section import Section, schema_faults
 from designer.errors import Fault, InputError
 from designer.model.prism import Prism
 from designer.model.rectangle import Rectangle

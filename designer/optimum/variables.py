@@ -8,9 +8,8 @@ from itertools import chain
 
 from pydantic import ValidationError
 
-from designer.documents.document import Document
-from designer.documents.faults import schema_faults
-from designer.documents.node import Key, Node, path_keys, path_text
+from designer.documents.document import Document, Key, Node, path_keys, path_text
+from designer.documents.section import schema_faults
 from designer.errors import Fault
 from designer.io.config.schema import StudySection
 from designer.units import QuantityError, describe, in_SI

@@ -15,11 +15,17 @@ from pydantic import AfterValidator, Field, ValidationError
 
 from designer import __version__
 from designer.arrays import FloatArray
-from designer.documents.document import Document, FileKind, read_document
-from designer.documents.faults import schema_faults
+from designer.documents.document import (
+    Document,
+    FileKind,
+    Key,
+    Node,
+    path_keys,
+    path_text,
+    read_document,
+)
 from designer.documents.fields import FreeMapping, Text, WholeNumber, different, list_of
-from designer.documents.node import Key, Node, path_keys, path_text
-from designer.documents.section import Section
+from designer.documents.section import Section, schema_faults
 from designer.errors import Fault, InputError
 from designer.sweep.point import Base, value_at, why_no_value
 from designer.units import describe

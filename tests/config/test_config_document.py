@@ -8,8 +8,7 @@ from typing import NoReturn
 
 import pytest
 
-from designer.documents.document import DEEPEST_NESTING, Document, read_document
-from designer.documents.node import path_text
+from designer.documents.document import DEEPEST_NESTING, Document, path_text, read_document
 from designer.documents.opened import LARGEST_FILE_BYTES
 from designer.errors import Fault, InputError
 

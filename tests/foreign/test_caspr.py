@@ -19,7 +19,7 @@ from models import (
 )
 
 from designer.errors import InputError
-from designer.foreign.read import read_foreign
+from designer.foreign.study import read_foreign
 
 
 def test_either_file_leads_to_the_whole_robot(tmp_path) -> None:

@@ -11,8 +11,7 @@ from models import EXITS, FREE, HELD, LIMITS, bodies, cables, link, wirex, write
 
 from designer.cli.commands import main
 from designer.errors import InputError
-from designer.foreign.read import read_foreign
-from designer.foreign.study import ImportAnswers, gaps, study_text
+from designer.foreign.study import ImportAnswers, gaps, read_foreign, study_text
 from designer.io.config import read_study
 from designer.study import require_enough_cables
 

@@ -7,8 +7,7 @@ import random
 from models import FREE, LIMITS, bodies, cables, link, wirex, write_caspr
 
 from designer.errors import InputError
-from designer.foreign.read import read_foreign
-from designer.foreign.study import ImportAnswers, gaps, study_text
+from designer.foreign.study import ImportAnswers, gaps, read_foreign, study_text
 
 _SWAPS = [
     ("<", ">"), ("1", "x"), ("2", "1e400"), ("0", "nan"), ("link", "lonk"), ("num", "none"),

@@ -7,7 +7,7 @@ import pytest
 from models import ENTERED, EXITS, HELD, NOBODY, NOBODYS_ROPE, ROPE, wirex
 
 from designer.errors import InputError
-from designer.foreign.read import read_foreign
+from designer.foreign.study import read_foreign
 
 
 def read(folder, text):

@@ -19,7 +19,7 @@ from designer.grades.grade import (
     Modulus,
     ThermalExpansion,
 )
-from designer.grades.stiffness import RelativeStiffness
+from designer.grades.parts import RelativeStiffness
 
 _SOUND = """\
 id: acme-7x19

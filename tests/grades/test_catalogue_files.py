@@ -10,7 +10,7 @@ from designer.errors import InputError
 from designer.grades import files
 from designer.grades.files import grade_files, read_grade, read_grades
 from designer.grades.grade import ComputedFigure
-from designer.grades.stiffness import RelativeStiffness
+from designer.grades.parts import RelativeStiffness
 
 
 def _faults(path: Path, text: str):

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from designer.grades.grade import Grade
-from designer.grades.stiffness import RelativeStiffness
+from designer.grades.parts import RelativeStiffness
 
 
 def _stiffness(ratios: tuple[float, ...], loads: tuple[float, ...] = ()) -> RelativeStiffness:

@@ -9,8 +9,7 @@ import pytest
 
 from designer.cli.commands import main
 from designer.reference.case import Figure, ReferenceCase, as_printed
-from designer.reference.converted import ROBOTS
-from designer.reference.page import CASES, compute, markdown
+from designer.reference.page import CASES, ROBOTS, compute, markdown
 from designer.reference.single_cables import LINES, WRONG_IN_MOORPY
 
 

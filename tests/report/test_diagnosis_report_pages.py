@@ -17,7 +17,6 @@ from designer.arrays import frozen_array
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.problem import Predictor
-from designer.diagnosis.propose import Proposal
 from designer.diagnosis.result import (
     MOST_SCATTER,
     Diagnosis,
@@ -27,6 +26,7 @@ from designer.diagnosis.result import (
     Use,
     Withdrawn,
 )
+from designer.diagnosis.search import Proposal
 from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED

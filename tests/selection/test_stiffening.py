@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
-from designer.grades.stiffness import RelativeStiffness
+from designer.grades.parts import RelativeStiffness
 from designer.model.cable import Cable, Stiffening
 from designer.model.load_case import LoadCase, Wind
 from designer.model.point_list import PointList

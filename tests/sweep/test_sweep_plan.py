@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from designer.documents.node import Node, path_keys, path_text
+from designer.documents.document import Node, path_keys, path_text
 from designer.sweep.plan import Range, ValueList, columns_of
 
 MASS = Range(("robot", "platform", "mass"), 100.0, 300.0, "kg", 5)

@@ -329,8 +329,7 @@ def _import(source: Path, target: Path) -> None:
     DesignerError
         If there is no such robot in the file, or the study cannot be written.
     """
-    from designer.foreign.read import read_foreign
-    from designer.foreign.study import ImportAnswers, study_text
+    from designer.foreign.study import ImportAnswers, read_foreign, study_text
     from designer.io.output import write_file
 
     write_file(target, study_text(read_foreign(source), ImportAnswers()))

@@ -10,16 +10,14 @@ import numpy as np
 from scipy.spatial import QhullError
 
 from designer.arrays import FloatArray
-from designer.documents.document import Document
-from designer.documents.node import Data
+from designer.documents.document import Data, Document
 from designer.documents.opened import open_input, reason
 from designer.documents.picture import LARGEST_PICTURE_BYTES, why_not_shown
 from designer.documents.section import reader_of
 from designer.effects.effect import ALL_ANCHORS, Effect
 from designer.errors import Fault
 from designer.io.config.columns import ColumnSection
-from designer.io.config.parts import Parts, valid
-from designer.io.config.robot_checks import AT_MOST, LARGEST, ROBOT_CHECKS, rank
+from designer.io.config.robot_checks import AT_MOST, LARGEST, ROBOT_CHECKS, Parts, rank, valid
 from designer.measured.names import COVARIATE, IGNORE, cable_of, is_rotation
 from designer.model.measurements import POSES
 from designer.model.prism import Prism

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from pydantic_core import PydanticCustomError
 
 from designer.documents.bounds import parameter_bound
+from designer.documents.document import Data, Flaw, Keys, Node, path_text, printable
 from designer.documents.fields import QuantityField, WholeNumber
-from designer.documents.node import Data, Flaw, Keys, Node, path_text, printable
 from designer.effects.effect import Effect, Parameter
 from designer.io.config.entries import as_given
 from designer.spelling import did_you_mean, nearest_name

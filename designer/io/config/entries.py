@@ -7,10 +7,10 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from designer.documents.document import Key, Node, path_text
 from designer.documents.fields import QuantityField, reader_in
-from designer.documents.node import Key, Node, path_text
 from designer.io.config.columns import ColumnSection
-from designer.io.config.orientation import OrientationSection
+from designer.io.config.regions import OrientationSection
 from designer.study import Entry
 from designer.units import NUMBER, Dimension, format_SI
 

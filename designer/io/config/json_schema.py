@@ -16,7 +16,7 @@ from designer.documents.section import words_at
 from designer.effects.effect import Effect
 from designer.io.config.columns import ColumnSection
 from designer.io.config.effects import field_of
-from designer.io.config.orientation import OrientationSection
+from designer.io.config.regions import OrientationSection
 from designer.io.config.schema import PoseSection, StudySection
 
 _SHORTHANDS = (PoseSection, OrientationSection, ColumnSection)

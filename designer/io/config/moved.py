@@ -12,8 +12,7 @@ from functools import partial
 from pathlib import Path
 
 from designer.documents import edits
-from designer.documents.document import Document
-from designer.documents.node import Key
+from designer.documents.document import Document, Key
 
 SCHEMA_FILE = "cdpr-designer.schema.json"
 """What `designer init` calls the schema, beside the study."""

@@ -7,9 +7,8 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from designer.documents.document import Document, read_document
-from designer.documents.faults import MOST_FAULTS, schema_faults
-from designer.documents.node import path_text
+from designer.documents.document import Document, path_text, read_document
+from designer.documents.section import MOST_FAULTS, schema_faults
 from designer.effects.registry import SHIPPED, KnownEffects
 from designer.errors import InputError
 from designer.io.config.checks import all_faults

@@ -37,20 +37,20 @@ from designer.documents.fields import (
 from designer.documents.formats import CONFIG_FORMAT
 from designer.documents.section import Section, config_field
 from designer.io.config.columns import Columns
-from designer.io.config.loads import LoadCaseSection
-from designer.io.config.machine import ConfiguredCable, RobotSection
-from designer.io.config.orientation import (
+from designer.io.config.machine import ConfiguredCable, LoadCaseSection, RobotSection
+from designer.io.config.regions import (
     EULER,
     QUATERNION,
     ROTATION_VECTOR,
+    AnyRegion,
     EulerSection,
     OrientationRangeSection,
     OrientationSection,
     Quaternion,
     only_one_of,
     rotation_vector_rad,
+    word_or_list,
 )
-from designer.io.config.regions import AnyRegion, word_or_list
 from designer.io.config.uncertainty import UncertaintySection
 from designer.model.measurements import LogColumn, Measurements, Reading
 from designer.model.region import Sampling

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from designer.grades.grade import ComputedFigure, Grade, Limits, Reference, Size
-from designer.grades.stiffness import RelativeStiffness
+from designer.grades.parts import RelativeStiffness
 from fibre_rope.creep import CreepLaw
 from fibre_rope.parameters import Condition, Parameters
 
