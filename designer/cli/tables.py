@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 _MOST_TURNS = 12
 """Turns of the loop that are shown; near poses that no cable can hold it makes hundreds."""
-_MEASURED = (("length", 1e3, "mm"), ("tension", 1.0, "N"))
-"""What is measured: its name, and the unit that its errors are shown in."""
 bad = "[bold red]{}[/]".format
 
 Row = tuple[str, ...]
@@ -276,14 +274,9 @@ def _found(diagnosis: Diagnosis) -> Iterator[Row]:
 
 def _bettered(diagnosis: Diagnosis) -> Iterator[Row]:
     """Yield the errors and the cables before and after."""
-    for kind, scale, unit in _MEASURED:
-        before, after = (
-            stage.length_m if kind == "length" else stage.tension_N
-            for stage in (diagnosis.stages[0], diagnosis.final)
-        )
-        if before is not None and after is not None:
-            was, now = scale * before.heldout.value, scale * after.heldout.value
-            yield f"{kind} error", f"{was:.3g} → {now:.3g} {unit} on unseen rows"
+    for kind, *errors in diagnosis.errors:
+        was, now = (kind.scale * error.heldout.value for error in errors)
+        yield f"{kind.name} error", f"{was:.3g} → {now:.3g} {kind.unit} on unseen rows"
     choices = (("cable before", diagnosis.design_before), ("after", diagnosis.design_after))
     for label, choice in choices:
         if choice is not None:
@@ -305,22 +298,18 @@ def print_check(check: Check, folder: Path, written: Sequence[str]) -> None:
 
 
 def _left(check: Check) -> Iterator[Row]:
-    for name, scale, unit in _MEASURED:
+    from designer.model.measured_data import KINDS
+
+    for kind in KINDS:
         for label, model in check.models:
-            deviation = model.length_m if name == "length" else model.tension_N
-            if deviation is not None:
-                figures = (
-                    deviation.rms.value,
-                    deviation.rms.low,
-                    deviation.rms.high,
-                    deviation.median,
-                )
-                value, low, high, median = (f"{scale * x:.4g}" for x in figures)
-                yield rf"{name} \[{unit}]", label, value, f"{low} to {high}", median
+            if deviation := kind.of(model):
+                figures = (deviation.rms.value, *deviation.rms.interval, deviation.median)
+                value, low, high, median = (f"{kind.scale * x:.4g}" for x in figures)
+                yield rf"{kind.name} \[{kind.unit}]", label, value, f"{low} to {high}", median
     for label, model in check.models:
         if model.foretold is not None and model.foretold.n_solved:
             place = model.foretold.position_m
-            value, low, high = (f"{1e3 * x:.4g}" for x in (place.value, place.low, place.high))
+            value, low, high = (f"{1e3 * x:.4g}" for x in (place.value, *place.interval))
             yield r"pose by lengths \[mm]", label, value, f"{low} to {high}", ""
 
 

@@ -164,9 +164,9 @@ def first_noise(
     effects : sequence of Effect
         Unknown from the start: fitted first.
     """
-    declared = (measurements.length_noise_m, measurements.tension_noise_N)
-    if declared[0] is not None and declared[1] is not None:
-        return Noise(declared[0], declared[1], "declared")
+    declared = measurements.declared_noise
+    if len(declared) == 2:
+        return Noise(declared["length"], declared["tension"], "declared")
     length, tension = (
         float(np.nanmedian(np.abs(kind))) if np.isfinite(kind).any() else 1.0
         for kind in (measured.length_m, measured.tension_N)
@@ -175,19 +175,14 @@ def first_noise(
     # worse than lengths.
     rough = Problem(measured, predict, Noise(0.01 * length, 0.1 * tension, "rough"))
     settings = fit(rough, effects, rows).settings if effects else ()
-    kinds = np.hsplit(rough.residual(settings) * rough.sigma, 2)
-    estimates = [
-        _fast_part(kind, measured) if value is None else value
-        for value, kind in zip(declared, kinds, strict=True)
-    ]
-    missing = [
-        name
-        for name, value, kind in zip(("length", "tension"), declared, kinds, strict=True)
-        if value is None and not np.isnan(kind).all()
-    ]
+    lengths, tensions = np.hsplit(rough.residual(settings) * rough.sigma, 2)
+    kinds = {"length": lengths, "tension": tensions}
+    unknown = {name: kind for name, kind in kinds.items() if name not in declared}
+    sizes = declared | {name: _fast_part(kind, measured) for name, kind in unknown.items()}
+    missing = [name for name, kind in unknown.items() if not np.isnan(kind).all()]
     how = "neighbouring poses" if measured.settled else "second differences in time"
     source = f"{' and '.join(missing)} estimated from {how} of the residual"
-    return Noise(estimates[0], estimates[1], source if missing else "declared")
+    return Noise(sizes["length"], sizes["tension"], source if missing else "declared")
 
 
 def rescaled(noise: Noise, measurements: Measurements, residual: FloatArray) -> Noise:

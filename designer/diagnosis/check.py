@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.as_json import check_dict
 from designer.diagnosis.case import case_of, first_noise
 from designer.diagnosis.errors_of import (
     Foretold,
@@ -22,11 +21,19 @@ from designer.diagnosis.errors_of import (
 from designer.diagnosis.fit import fit
 from designer.diagnosis.hold import structure_left
 from designer.diagnosis.problem import Problem
+from designer.diagnosis.result import (
+    Json,
+    effects_table,
+    framed,
+    reasons,
+    rows_dict,
+    structure_dict,
+)
 from designer.diagnosis.statistics import block_of
 from designer.diagnosis.structure import Structure
 from designer.documents.plain import json_text, record
 from designer.effects.effect import Setting
-from designer.model.measured_data import Measured, Noise
+from designer.model.measured_data import KINDS, Measured, Noise
 from designer.study import Study
 
 CARRIED = "as estimated when diagnosed"
@@ -124,10 +131,8 @@ class Check:
         return holds and helps and not self.structure.is_present
 
     def _size(self, model: Model) -> float:
-        kinds = ((model.length_m, self.noise.length_m), (model.tension_N, self.noise.tension_N))
-        return sum(
-            (scatter.rms.value / noise) ** 2 for scatter, noise in kinds if scatter is not None
-        )
+        left = [(kind.of(model), kind.of(self.noise)) for kind in KINDS if kind.of(model)]
+        return float(sum((deviation.rms.value / noise) ** 2 for deviation, noise in left))
 
     @property
     def models(self) -> list[tuple[str, Model]]:
@@ -166,7 +171,33 @@ class Check:
 
     def to_dict(self) -> dict[str, Any]:
         """Return what ``diagnosis.json`` holds; a missing number is None."""
-        return check_dict(self)
+        names = {"without": self.without, "with": self.declared, "unknowns_fitted": self.fitted}
+        models = {name: model for name, model in names.items() if model is not None}
+
+        def of_each(attribute: str) -> Json | None:
+            values = {name: getattr(model, attribute) for name, model in models.items()}
+            return values if any(value is not None for value in values.values()) else None
+
+        answer = {
+            "rows": {
+                "all": self.measured.n_rows,
+                "compared": self.n_compared,
+                "not_held": of_each("n_not_held"),
+                **rows_dict(self.outliers, self.measured),
+            },
+            "check": {
+                "length_m": of_each("length_m"),
+                "tension_N": of_each("tension_N"),
+                "forward": of_each("foretold"),
+                "helps": self.helps,
+                "stands": self.is_positive,
+            },
+            "effects": effects_table(self.study.effects),
+            "idle": reasons(self.idle),
+            "unexplained": structure_dict(self.structure),
+            "noise": self.noise,
+        }
+        return framed(answer, self.study, self.measured)
 
     def to_json(self) -> str:
         """Return the text of ``diagnosis.json``."""

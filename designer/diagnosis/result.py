@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
+import numpy as np
+
+from designer import __version__
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.as_json import diagnosis_dict
-from designer.diagnosis.errors_of import Foretold, Outlier, Stage
+from designer.diagnosis.errors_of import Error, Foretold, Outlier, Stage
 from designer.diagnosis.search import Proposal, Step
 from designer.diagnosis.structure import Correction, Structure, Whereabouts
-from designer.documents.plain import json_text
+from designer.documents.formats import DIAGNOSIS_FORMAT
+from designer.documents.plain import json_text, plain, record
 from designer.effects.effect import Effect, Readings, Setting
 from designer.model.machine import Machine
-from designer.model.measured_data import Measured, Noise
-from designer.study import Study
+from designer.model.measured_data import KINDS, Measured, Noise, ReadingKind
+from designer.study import DeclaredEffect, Study
+
+Json = dict[str, Any]
 
 MOST_SCATTER = 1.5
 """Times the declared noise beyond which sensors do not explain what is left."""
@@ -268,6 +273,13 @@ class Diagnosis:
         return tuple(s for s in self.final.settings if s.effect.key in keys)
 
     @property
+    def errors(self) -> Iterator[tuple[ReadingKind, Error, Error]]:
+        """Each kind of reading that was measured, with its error before and after."""
+        for kind in KINDS:
+            if kind.of(self.stages[0]) and kind.of(self.final):
+                yield kind, kind.of(self.stages[0]), kind.of(self.final)
+
+    @property
     def is_unexplained(self) -> bool:
         """Whether structure is left that no effect explains."""
         return self.structure_after.is_present
@@ -278,25 +290,18 @@ class Diagnosis:
 
         Of noise that was estimated from what is left, it tells nothing.
         """
-        kinds = {
-            "length": (self.final.length_m, self.noise.length_m),
-            "tension": (self.final.tension_N, self.noise.tension_N),
-        }
         return {
-            name: error.heldout.value / noise
-            for name, (error, noise) in kinds.items()
-            if error is not None and math.isfinite(error.heldout.value)
+            kind.name: after.heldout.value / kind.of(self.noise)
+            for kind in KINDS
+            if (after := kind.of(self.final)) and math.isfinite(after.heldout.value)
         }
 
     @property
     def is_scattered(self) -> bool:
         """Whether more is left than the sensors explain: over 1.5 times the declared noise."""
         measurements = self.study.measurements
-        declared = {
-            "length": measurements is not None and measurements.length_noise_m is not None,
-            "tension": measurements is not None and measurements.tension_noise_N is not None,
-        }
-        return any(x > MOST_SCATTER for name, x in self.scatter.items() if declared[name])
+        declared = measurements.declared_noise if measurements else {}
+        return any(x > MOST_SCATTER for name, x in self.scatter.items() if name in declared)
 
     @property
     def verdict(self) -> DiagnosisVerdict:
@@ -312,8 +317,101 @@ class Diagnosis:
 
     def to_dict(self) -> dict[str, Any]:
         """Return what ``diagnosis.json`` holds; a missing number is None."""
-        return diagnosis_dict(self)
+        left_in = self.left_in
+        errors = {"length_m": None, "tension_N": None} | {
+            f"{kind.name}_{kind.unit_SI}": {
+                "before": before,
+                "after": after,
+                "noise": kind.of(self.noise),
+            }
+            for kind, before, after in self.errors
+        }
+        answer = {
+            "verdict": self.verdict,
+            "rows": {
+                "fit": int((~self.heldout).sum()),
+                "heldout": int(self.heldout.sum()),
+                **rows_dict(self.outliers, self.measured),
+            },
+            "effects": self.findings,
+            "withdrawn": self.withdrawn,
+            "left_out": self.study.known_effects.problems,
+            "skipped": reasons(self.skipped),
+            "unknown": self.given,
+            "not_plausible": self.doubts,
+            "unexplained": {
+                **structure_dict(self.structure_after),
+                "reading": left_in and left_in.reading,
+                "rows": left_in.rows if left_in else [],
+            },
+            "scatter": {"present": self.is_scattered, **self.scatter},
+            "error": errors,
+            "forward": {"before": self.foretold_before, "after": self.foretold_after},
+            "noise": {"source": self.noise.source},
+            "stages": self.stages,
+            "search": {"is_complete": not self.not_tried, "not_tried": self.not_tried},
+            "balance": _balance(self.imbalance),
+            "proposals": self.proposals,
+            "design": {
+                "before": self.design_before,
+                "after": self.design_after,
+                "kept": self.kept,
+                "mounted": {"before": self.mounted_before, "after": self.mounted_after},
+            },
+        }
+        return framed(answer, self.study, self.measured)
 
     def to_json(self) -> str:
         """Return the text of ``diagnosis.json``."""
         return json_text(self.to_dict())
+
+
+def effects_table(declared: Sequence[DeclaredEffect]) -> Json:
+    """Return the table ``effects`` of a config: by id; those of single cables become lists."""
+    answer: Json = {}
+    for effect in declared:
+        values: Json = {name: float(value) for name, value in effect.parameters.items()}
+        if effect.cable is None:
+            answer[effect.id] = values
+        else:
+            answer.setdefault(effect.id, []).append({"cable": effect.cable, **values})
+    return answer
+
+
+def framed(answer: Json, study: Study, measured: Measured) -> Json:
+    """Return an answer between what every such file begins and ends with."""
+    provenance = {
+        "version": __version__,
+        "config_sha256": study.source.sha256,
+        "data_sha256": measured.sha256,
+    }
+    head = {"format": DIAGNOSIS_FORMAT, "name": study.name}
+    return plain({**head, **answer, "provenance": provenance})
+
+
+def rows_dict(outliers: Sequence[Outlier], measured: Measured) -> Json:
+    """Return what files hold of the rows of either."""
+    poses = "measured" if measured.has_poses else "estimated"
+    return {"outliers": outliers, "notes": measured.notes, "poses": poses}
+
+
+def structure_dict(structure: Structure) -> Json:
+    """Return what files hold of a test."""
+    return {"present": structure.is_present, **record(structure)}
+
+
+def reasons(effects: Sequence[tuple[str, str]]) -> list[Json]:
+    """Return effects by id, each with the reason."""
+    return [{"id": key, "reason": reason} for key, reason in effects]
+
+
+def _balance(imbalance: FloatArray | None) -> Json | None:
+    """Return how far poses are from balance, over the weight, where cables let them sway."""
+    if imbalance is None:
+        return None
+    held = imbalance[~np.isnan(imbalance)]
+    return {
+        "left_median": np.median(held) if held.size else None,
+        "left_largest": held.max() if held.size else None,
+        "rows_not_held": imbalance.size - held.size,
+    }

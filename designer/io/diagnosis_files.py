@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from designer.diagnosis.as_json import effects_table
 from designer.diagnosis.design import declared_by
-from designer.diagnosis.result import Diagnosis
+from designer.diagnosis.result import Diagnosis, effects_table
 from designer.documents.document import decode, document_of
 from designer.documents.edits import scalar, with_section, with_value
 from designer.documents.opened import read_input
 from designer.io.config.moved import moved_to, path_from
+from designer.model.measured_data import KINDS
 
 
 def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None) -> str:
@@ -46,28 +46,19 @@ def _origin(diagnosis: Diagnosis) -> str:
     lines = [
         f"From the diagnosis of {measured.file.name}, SHA-256 {diagnosis.measured.sha256[:16]}"
     ]
-    for kind, scale, unit in (("length", 1e3, "mm"), ("tension", 1.0, "N")):
-        before, last = (
-            stage.length_m if kind == "length" else stage.tension_N
-            for stage in (diagnosis.stages[0], diagnosis.final)
-        )
-        if before is not None and last is not None:
-            was, now = scale * before.heldout.value, scale * last.heldout.value
-            lines.append(f"{kind} error on unseen rows {was:.3g} -> {now:.3g} {unit}")
+    for kind, *errors in diagnosis.errors:
+        was, now = (kind.scale * error.heldout.value for error in errors)
+        lines.append(f"{kind.name} error on unseen rows {was:.3g} -> {now:.3g} {kind.unit}")
     return "; ".join(lines)
 
 
 def _estimated_noise(diagnosis: Diagnosis) -> dict[str, float]:
     """Return the noise that nobody declared, of readings that there are."""
-    declared, measured, noise = diagnosis.study.measurements, diagnosis.measured, diagnosis.noise
-    assert declared is not None
-    kinds = {
-        "length": (declared.length_noise_m, measured.length_m, noise.length_m),
-        "tension": (declared.tension_noise_N, measured.tension_N, noise.tension_N),
-    }
+    measurements = diagnosis.study.measurements
+    assert measurements is not None
+    declared = measurements.declared_noise.keys() - {*measurements.estimated_noise}
     return {
-        kind: float(size)
-        for kind, (declared_size, readings, size) in kinds.items()
-        if (declared_size is None or kind in declared.estimated_noise)
-        and np.isfinite(readings).any()
+        kind.name: float(kind.of(diagnosis.noise))
+        for kind in KINDS
+        if kind.name not in declared and np.isfinite(kind.of(diagnosis.measured)).any()
     }

@@ -4,11 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.robot import Poses
+
+
+class ReadingKind(NamedTuple):
+    """A kind of reading: its name, its SI unit, the unit that it is shown in, the scale to that."""
+
+    name: str
+    unit_SI: str
+    unit: str
+    scale: float
+
+    def of(self, values: Any) -> Any:
+        """Return what stages, data and the like have of this kind, as ``length_m``."""
+        return getattr(values, f"{self.name}_{self.unit_SI}")
+
+
+KINDS = (ReadingKind("length", "m", "mm", 1e3), ReadingKind("tension", "N", "N", 1.0))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

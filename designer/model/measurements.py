@@ -79,6 +79,12 @@ class Measurements(checked.Value):
     search_time_s: checked.NotNegative = 600.0
 
     @property
+    def declared_noise(self) -> dict[str, float]:
+        """Standard deviations that are given, of ``length`` [m] and ``tension`` [N]."""
+        given = {"length": self.length_noise_m, "tension": self.tension_noise_N}
+        return {kind: size for kind, size in given.items() if size is not None}
+
+    @property
     def has_poses(self) -> bool:
         """Whether poses were measured; else each row's own readings have to tell its pose."""
         return POSES not in self.unknown

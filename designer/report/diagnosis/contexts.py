@@ -185,8 +185,8 @@ def _changes(diagnosis: Diagnosis) -> Iterator[float]:
 
 def _effects_text(diagnosis: Diagnosis) -> str:
     """Return the block ``effects`` as YAML; empty where there are none."""
-    from designer.diagnosis.as_json import effects_table
     from designer.diagnosis.design import declared_by
+    from designer.diagnosis.result import effects_table
     from designer.documents.edits import block
 
     table = effects_table(declared_by(diagnosis))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from designer.arrays import FloatArray
 from designer.diagnosis.errors_of import Error, Interval, Stage
 from designer.diagnosis.result import Diagnosis
-from designer.model.measured_data import Noise
+from designer.model.measured_data import KINDS, Noise
 from designer.report import format as fmt
 
 
@@ -59,16 +59,11 @@ class Quantity:
 
 def kinds(noise: Noise) -> tuple[Quantity, Quantity]:
     """Return lengths and tensions, measured or not."""
-    return (
-        Quantity("length", "mm", 1e3, noise.length_m),
-        Quantity("tension", "N", 1.0, noise.tension_N),
-    )
+    length, tension = (Quantity(x.name, x.unit, x.scale, x.of(noise)) for x in KINDS)
+    return length, tension
 
 
 def quantities(diagnosis: Diagnosis) -> Iterator[tuple[Quantity, Error, Error]]:
     """Yield each kind that was measured, with its error before and after."""
-    for quantity in kinds(diagnosis.noise):
-        before = quantity.error_of(diagnosis.stages[0])
-        after = quantity.error_of(diagnosis.final)
-        if before is not None and after is not None:
-            yield quantity, before, after
+    of_name = {quantity.name: quantity for quantity in kinds(diagnosis.noise)}
+    return ((of_name[kind.name], before, after) for kind, before, after in diagnosis.errors)
