@@ -93,11 +93,12 @@ def pareto_front(values: FloatArray, counts: BoolArray) -> BoolArray:
 def sweep_report(dataset: xr.Dataset, name: str, created: datetime) -> Report:
     """Return the document on a store, of a sweep called ``name``."""
     points = SweptPoints.of(dataset)
+    reasons = Counter(sorted(reason for reason in dataset["reason"].values if reason))
     contexts = {
         "answer": _overview(dataset, points),
         "trade-offs": _trade_offs(points),
         "fields": _influences(points),
-        "reasons": _reasons(dataset),
+        "reasons": {"reasons": reasons.most_common(_MOST_POINTS)} if reasons else None,
     }
     sections = (Section(key, context=value) for key, value in contexts.items() if value)
     return Report.of("sweep", name, "Sweep over a study", created, sections)
@@ -175,8 +176,3 @@ def _influences(points: SweptPoints) -> Mapping[str, object] | None:
         "parallel": vector(lines or None),
         "colour": colour.title,
     }
-
-
-def _reasons(dataset: xr.Dataset) -> Mapping[str, object] | None:
-    reasons = Counter(sorted(reason for reason in dataset["reason"].values if reason))
-    return {"reasons": reasons.most_common(_MOST_POINTS)} if reasons else None

@@ -9,7 +9,6 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.governing import GoverningPose
 from designer.model.requirement import Requirement, State
 from designer.report import format as fmt
-from designer.study import Study
 
 
 def requirements(analysis: Analysis) -> Mapping[str, object]:
@@ -17,23 +16,17 @@ def requirements(analysis: Analysis) -> Mapping[str, object]:
     pose = analysis.governing
     shown = {
         "requirements": by_title(analysis.requirements),
-        "not_evaluated": _not_evaluated(analysis.study, analysis.requirements),
         "pose": pose,
     }
-    return shown if pose is None else {**shown, **_figures(pose)}
-
-
-def _figures(pose: GoverningPose) -> Mapping[str, object]:
+    if pose is None:
+        return shown
     write = _alike(cable.exit_tension_N for cable in pose.cables)
     return {
-        "governing_cable": pose.cables[_most_loaded(pose)].cable,
+        **shown,
+        "governing_cable": pose.cables[int(pose.alone.cable_tension_N.argmax())].cable,
         "tensions": [write(one.exit_tension_N, one.platform_tension_N) for one in pose.cables],
         "forces": _forces(pose),
     }
-
-
-def _most_loaded(pose: GoverningPose) -> int:
-    return int(pose.alone.cable_tension_N.argmax())
 
 
 def _forces(pose: GoverningPose) -> list[tuple[str, list[str]]]:
@@ -60,28 +53,6 @@ def unmet_by_title(requirements: Iterable[Requirement]) -> list[list[Requirement
         for state in (State.FAILS, State.OPEN)
         for same in by_title(each for each in unmet if each.state is state)
     ]
-
-
-_LIMITS = {
-    "sag": "sag (any is allowed)",
-    "floor": "height over a floor (none is given)",
-    "clearance": "clearance (none is given)",
-    "stiffness": "stiffness (no limit is given)",
-    "excitation": "frequencies of cables (no excitation is given)",
-    "drum_capacity": "drums (no capacity is given)",
-}
-
-
-def _not_evaluated(study: Study, requirements: tuple[Requirement, ...]) -> list[str]:
-    """Return what the study does not require, or gives no figures for."""
-    required = {requirement.id for requirement in requirements}
-    lacking = []
-    if "sheave_ratio" not in required:
-        has_sheave = study.selection is not None and study.selection.sheave_diameter_m is not None
-        lacking.append(
-            "D/d (no least ratio is known)" if has_sheave else "D/d (no sheave is given)"
-        )
-    return [*lacking, *(words for name, words in _LIMITS.items() if name not in required)]
 
 
 def _alike(forces_N: Iterable[float]) -> Callable[..., tuple[str, ...]]:

@@ -13,7 +13,6 @@ from itertools import zip_longest
 import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.arrays import FloatArray
 from designer.grades.grade import Grade, Size
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.verdict import Verdict
@@ -220,9 +219,7 @@ def proof(analysis: Analysis) -> Context | None:
     """What was proved of the chosen rope, and how; None where nothing was to be."""
     selection = analysis.selection
     proved = None if selection is None else selection.proof
-    if proved is None or proved.status == "off":
-        return None
-    return {"proved": proved}
+    return None if proved is None or proved.status == "off" else {"proved": proved}
 
 
 def assumptions(analysis: Analysis) -> Context:
@@ -250,10 +247,7 @@ def nomenclature(_: Analysis) -> Context:
 
 def verification(analysis: Analysis) -> Context | None:
     """Ours beside what other methods find; None where nothing was solved."""
-    answers = analysis.verification
-    if not answers:
-        return None
-    return {"answers": answers}
+    return {"answers": analysis.verification} if analysis.verification else None
 
 
 def uncertainty(analysis: Analysis) -> Context | None:
@@ -267,13 +261,9 @@ def uncertainty(analysis: Analysis) -> Context | None:
     sizes = [
         {"odds": odds, "median": middle, "highest": high}
         for odds in survey.sizes
-        for middle, high in [_percentiles(odds.utilisation, 50.0, 95.0)]
+        for middle, high in [np.percentile(odds.utilisation, [50.0, 95.0], method="higher")]
     ]
     return {"uncertainty": survey, "sizes": sizes, "scrambles": SCRAMBLES}
-
-
-def _percentiles(values: FloatArray, *percents: float) -> list[float]:
-    return [float(np.percentile(values, percent, method="higher")) for percent in percents]
 
 
 def left_out(analysis: Analysis) -> Context | None:

@@ -23,11 +23,9 @@ _EXCLUDED: tuple[Standing, ...] = ("dominated", "too_thin", "not_held", "not_com
 
 def selection(analysis: Analysis) -> Context | None:
     """What was chosen and tried; None if the study asks for no rope."""
-    return None if analysis.selection is None else context_of(analysis.selection)
-
-
-def context_of(result: SelectionResult) -> Context:
-    """Return what the template gets of a selection."""
+    result = analysis.selection
+    if result is None:
+        return None
     tried, meanings = result.candidates, [MEANINGS[o] for o in result.objectives]
     best, alternatives = _best(result, result.outcomes), _best(result, result.alternatives)
     trusts = {outcome.grade.trust for outcome in result.outcomes}
