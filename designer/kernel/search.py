@@ -125,6 +125,7 @@ def search_range(
     pose = new_pose(figures, situation.rows)
     lp = new_programme(m, n)
     scratch = new_scratch(m, n)
+    pulls, lifts = np.empty((n, _PARTS + 1)), np.empty((n, _PARTS + 1))
     sizing = inverse_weight < 0.0
     keep_cables, keep_pose = np.empty((n, 3)), np.empty(out.poses.shape[1])
     for at in range(start, stop):
@@ -140,6 +141,7 @@ def search_range(
             best = to_scaled / out.poses[at, WEIGHT] if sizing else -out.poses[at, LOAD_FACTOR]
         state = np.uint64(_RANDOM_SEED)
         is_proved = best == -np.inf and straight_c > 0.0 and _point_bounds(pose)
+        pulls[0, 0] = 0.0  # to be divided when first a start fails
         n_starts = n + 3 + _RANDOM_STARTS
         for attempt in range(n_starts + 2 * n + _RANDOM_BESIDE):
             if best == -np.inf and (is_proved or attempt >= n_starts):
@@ -155,7 +157,7 @@ def search_range(
             if best == -np.inf and not (is_optimal and (s > 0.0 or not sizing)):
                 for k in range(m):
                     scratch.value[k] = -scratch.dual[k]
-                is_proved = _bounds(pose, scratch.value)
+                is_proved = _bounds(pose, scratch.value, pulls, lifts)
             if not is_optimal or not (s > best + _BETTER * abs(s) or best == -np.inf):
                 continue
             _copy_answer(out.cables[at], out.poses[at], keep_cables, keep_pose)
@@ -279,35 +281,43 @@ def _point_bounds(pose: Pose) -> bool:
 
 
 @inner
-def _bounds(pose: Pose, value: FloatArray) -> bool:
-    """Tell whether a wrench proves that no c above zero is left."""
+def _bounds(pose: Pose, value: FloatArray, pulls: FloatArray, lifts: FloatArray) -> bool:
+    """Tell whether a wrench proves that no c above zero is left.
+
+    Pulls and lifts (n, parts + 1) are the same for all wrenches; they are filled where the first
+    pull is zero.
+    """
     of_load = 0.0
     for k in range(value.size):
         of_load += value[k] * pose.load[pose.rows[k]]
     if not of_load >= 0.0:
         return False
+    if pulls[0, 0] == 0.0:
+        _divide(pose, pulls, lifts)
     total, size = 0.0, 0.0
     for i in range(pose.cables.shape[1]):
-        largest = _most(pose, value, i)
+        factor = pose.cables[SHARE, i] / pose.scale[FORCE]
+        alpha = along(pose, value, LEVEL, i) * factor
+        beta = along(pose, value, LIFT, i) * factor
+        largest, p, up = -np.inf, pulls[i, 0], lifts[i, 0]
+        for j in range(1, _PARTS + 1):
+            before, p_before, p, up = up, p, pulls[i, j], lifts[i, j]
+            bound = max(alpha * p_before, alpha * p) + max(beta * before, beta * up)
+            largest = max(largest, bound)
         total += largest
         size += abs(largest)
     return bool(total < -_MARGIN * size)
 
 
 @inner
-def _most(pose: Pose, value: FloatArray, i: int) -> float:
-    """Return an upper bound of g over all pulls that the strength of a cable bears."""
-    factor = pose.cables[SHARE, i] / pose.scale[FORCE]
-    alpha, beta = along(pose, value, LEVEL, i) * factor, along(pose, value, LIFT, i) * factor
-    low, high = _range(pose, i)
-    ratio = (high / low) ** (1.0 / _PARTS)
-    largest, up = -np.inf, _lift_and_top(pose.cables, i, low)[0]
-    for _ in range(_PARTS):
-        before, p = up, low
-        low *= ratio
-        up = _lift_and_top(pose.cables, i, low)[0]
-        largest = max(largest, max(alpha * p, alpha * low) + max(beta * before, beta * up))
-    return float(largest)
+def _divide(pose: Pose, pulls: FloatArray, lifts: FloatArray) -> None:
+    """Divide all pulls that the strength of each cable bears into parts; lifts (n, parts + 1)."""
+    for i in range(pose.cables.shape[1]):
+        low, high = _range(pose, i)
+        ratio = (high / low) ** (1.0 / _PARTS)
+        for j in range(_PARTS + 1):
+            pulls[i, j], lifts[i, j] = low, _lift_and_top(pose.cables, i, low)[0]
+            low *= ratio
 
 
 @inner
