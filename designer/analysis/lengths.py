@@ -10,7 +10,7 @@ import numpy as np
 from designer.analysis.analyse import Analysis
 from designer.arrays import BoolArray, FloatArray
 from designer.documents.plain import csv_text
-from designer.measured.names import length_names, tension_names
+from designer.measured.assign import length_names, tension_names
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.selection.qualities import DesignCable

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.effects.along import pull_of
-from designer.effects.effect import Effect, Parameter, Readings, Size, Values, frame_size_m
+from designer.effects.effect import Effect, Parameter, Readings, Size, Values, frame_size_m, pull_of
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.model.robot import Poses, Robot

@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from designer.effects.along import pull_of
-from designer.effects.effect import Effect, Parameter, Readings, Size, Values
+from designer.effects.effect import Effect, Parameter, Readings, Size, Values, pull_of
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.units import FORCE, NUMBER

@@ -18,7 +18,7 @@ from designer.documents.section import words_at
 from designer.effects.effect import Effect
 from designer.explore.sliders import Sizes, count_slider, slider
 from designer.io.config.effects import field_of, read_effects
-from designer.io.config.entries import field_node
+from designer.io.config.reader import field_node
 from designer.io.config.regions import FORMS
 from designer.io.config.schema import StudySection
 from designer.units import FORCE, MOMENT, NUMBER, Dimension, format_SI, read_quantity

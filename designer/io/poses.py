@@ -12,7 +12,7 @@ from designer.arrays import FloatArray
 from designer.documents.bounds import BOUNDS
 from designer.documents.opened import open_input, reason
 from designer.errors import Fault, InputError
-from designer.measured.names import POSITION, ROTATION_VECTOR
+from designer.measured.assign import POSITION, ROTATION_VECTOR
 from designer.measured.table import LogTable, RawColumn, read_table
 from designer.model.robot import Poses, Robot
 

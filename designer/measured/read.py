@@ -10,14 +10,15 @@ from scipy.spatial.transform import Rotation
 from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.documents.opened import open_input, reason
 from designer.errors import Fault, InputError
-from designer.measured.assign import Assigned, assign
-from designer.measured.names import (
+from designer.measured.assign import (
     POSITION,
     QUATERNION,
     ROTATION_VECTOR,
     TEMPERATURE_NAME,
     TIME_NAME,
     WIND,
+    Assigned,
+    assign,
     length_names,
     tension_names,
 )
@@ -35,7 +36,7 @@ MOST_FAULTS = 100
 def read_measured(study: Study) -> Measured:
     """Return what was measured on the machine that the study describes.
 
-    Columns go by the names of `designer.measured.names`; the config's ``measurements.columns``
+    Columns go by the names of `designer.measured.assign`; the config's ``measurements.columns``
     translates others. Cells that are empty, ``nan`` or ``NA`` hold nothing. Of a long log all rows
     are checked, and `designer.measured.rows.MOST_ROWS` returned.
 

@@ -10,8 +10,14 @@ import numpy as np
 
 from designer.arrays import BoolArray, IntArray
 from designer.errors import Fault
-from designer.measured.assign import Assigned
-from designer.measured.names import POSITION, TIME_NAME, dimension_of, length_names, tension_names
+from designer.measured.assign import (
+    POSITION,
+    TIME_NAME,
+    Assigned,
+    dimension_of,
+    length_names,
+    tension_names,
+)
 from designer.measured.table import MOST_ALIKE, LogTable, RawColumn, is_number
 from designer.spelling import in_runs
 from designer.units import ANGLE, FORCE, LENGTH, NUMBER, SPEED, TEMPERATURE, describe

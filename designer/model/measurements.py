@@ -22,7 +22,7 @@ class LogColumn:
     name : str
         Its name in the log.
     target : str
-        Our name for it, see `designer.measured.names`; ``ignore`` or ``covariate`` for none.
+        Our name for it, see `designer.measured.assign`; ``ignore`` or ``covariate`` for none.
     scale, offset : float
         From the log's numbers to ours, in the unit that our name ends in.
     """

@@ -1,5 +1,5 @@
 """The door by which rope grades and physical effects come in, ours as well as anybody's."""
 
-from designer.plugins.hookspecs import hookimpl
+from designer.plugins.hooks import hookimpl
 
 __all__ = ["hookimpl"]

@@ -13,8 +13,8 @@ from importlib import import_module
 from importlib.metadata import EntryPoint
 from typing import Any
 
-from designer.plugins import guard, hookspecs
-from designer.plugins.hooks import hooks_of, listed
+from designer.plugins import guard
+from designer.plugins.hooks import ENTRY_POINT_GROUP, PLAIN, hooks_of, listed
 
 _MOST_MEMORY_BYTES = 4 << 30
 _MOST_PROCESSOR_S = 120
@@ -26,7 +26,7 @@ def main(name: str, value: str, label: str, longest_wait_s: float) -> None:
     os.dup2(2, 1)  # what the plugin itself prints below Python goes to standard error
     _limit()
     guard.LONGEST_WAIT_S = longest_wait_s
-    plain = {hook: import_module(module) for hook, module in hookspecs.PLAIN.items()}
+    plain = {hook: import_module(module) for hook, module in PLAIN.items()}
 
     def say(**message: Any) -> None:
         out.write(f"{json.dumps(message)}\n")
@@ -35,7 +35,7 @@ def main(name: str, value: str, label: str, longest_wait_s: float) -> None:
     problems: list[str] = []
     items: dict[str, list[Any]] = {}
     say(doing=(failure := "cannot be loaded"))
-    entry = EntryPoint(name, value, hookspecs.ENTRY_POINT_GROUP)
+    entry = EntryPoint(name, value, ENTRY_POINT_GROUP)
     hooks = guard.attempt(partial(hooks_of, entry), label, failure, problems)
     for hook, function in (hooks or {}).items():
         say(doing=(failure := f"fails in {hook}()"))

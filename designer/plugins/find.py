@@ -10,14 +10,13 @@ from importlib.metadata import EntryPoint, distributions, entry_points
 
 import designer
 from designer.errors import described, one_line
-from designer.plugins import hookspecs
 from designer.plugins.examine import PluginQuestion, examine
 from designer.plugins.guard import attempt
-from designer.plugins.hooks import hooks_of, listed
+from designer.plugins.hooks import ENTRY_POINT_GROUP, PLAIN, hooks_of, listed
 
 OWN_ENTRIES = (
-    EntryPoint("builtin", "designer.grades.builtin", hookspecs.ENTRY_POINT_GROUP),
-    EntryPoint("builtin-effects", "designer.effects.builtin", hookspecs.ENTRY_POINT_GROUP),
+    EntryPoint("builtin", "designer.grades.builtin", ENTRY_POINT_GROUP),
+    EntryPoint("builtin-effects", "designer.effects.builtin", ENTRY_POINT_GROUP),
 )
 """Our own plugins, as `pyproject.toml` declares them.
 
@@ -114,8 +113,8 @@ def ask(plugins: Plugins, hook: str) -> tuple[list[Offer], list[str]]:
 
 def _hook(request: PluginQuestion, hook: str, items: Sequence[object]) -> Callable[[], object]:
     """Return what gives a plugin's answer: from plain data, or by the plugin itself."""
-    if hook in hookspecs.PLAIN:
-        plain = import_module(hookspecs.PLAIN[hook])
+    if hook in PLAIN:
+        plain = import_module(PLAIN[hook])
         return lambda: [plain.from_plain(item) for item in items]
     return lambda: hooks_of(request.entry)[hook]()  # noqa: PLW0108  # loads the plugin when called
 
@@ -123,7 +122,7 @@ def _hook(request: PluginQuestion, hook: str, items: Sequence[object]) -> Callab
 def _strangers(problems: list[str]) -> list[EntryPoint]:
     """Return the entry points of others by name; names a distribution that cannot be read."""
     try:
-        entries = list(entry_points(group=hookspecs.ENTRY_POINT_GROUP))
+        entries = list(entry_points(group=ENTRY_POINT_GROUP))
     except Exception:  # one that cannot be read takes all along
         entries = list(_one_by_one(problems))
     strangers = [entry for entry in entries if entry.value not in _OWN_MODULES]
@@ -136,7 +135,7 @@ def _one_by_one(problems: list[str]) -> Iterator[EntryPoint]:
         path = getattr(place, "_path", "a distribution")
         try:
             if place.name not in seen:  # the first on Python's path is the one that is loaded
-                yield from place.entry_points.select(group=hookspecs.ENTRY_POINT_GROUP)
+                yield from place.entry_points.select(group=ENTRY_POINT_GROUP)
             seen.add(place.name)
         except Exception as error:
             line = f"{one_line(path)}: its metadata cannot be read: {described(error)}: left out"

@@ -16,7 +16,7 @@ import designer
 from designer.cli.commands import main
 from designer.grades import files
 from designer.grades.registry import CatalogueSource, load_catalogue
-from designer.plugins import find, guard, hookspecs
+from designer.plugins import find, guard, hooks
 
 
 @cache
@@ -344,6 +344,6 @@ def test_our_entry_points_are_those_that_pyproject_declares():
     pyproject = Path(__file__).parents[2] / "pyproject.toml"
     project = tomllib.loads(pyproject.read_text(encoding="utf-8"))["project"]
 
-    declared = project["entry-points"][hookspecs.ENTRY_POINT_GROUP]
+    declared = project["entry-points"][hooks.ENTRY_POINT_GROUP]
 
     assert declared == {entry.name: entry.value for entry in find.OWN_ENTRIES}

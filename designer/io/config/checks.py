@@ -18,7 +18,7 @@ from designer.effects.effect import ALL_ANCHORS, Effect
 from designer.errors import Fault
 from designer.io.config.columns import ColumnSection
 from designer.io.config.robot_checks import AT_MOST, LARGEST, ROBOT_CHECKS, Parts, rank, valid
-from designer.measured.names import COVARIATE, IGNORE, cable_of, is_rotation
+from designer.measured.assign import COVARIATE, IGNORE, cable_of, is_rotation
 from designer.model.measurements import POSES
 from designer.model.prism import Prism
 from designer.model.rectangle import Rectangle

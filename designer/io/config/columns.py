@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, model_validator
 
 from designer.documents.fields import Text, bounded, mapping, refusal
 from designer.documents.section import Section, config_field
-from designer.measured.names import COVARIATE, IGNORE, column_hint, dimension_of
+from designer.measured.assign import COVARIATE, IGNORE, column_hint, dimension_of
 from designer.units import NUMBER, TEMPERATURE, Dimension, QuantityError, describe, read_quantity
 
 _TARGET = f"a column of ours such as 'length_1_m', or '{IGNORE}', or '{COVARIATE}'"

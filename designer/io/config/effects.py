@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from pydantic_core import PydanticCustomError
 
 from designer.documents.bounds import parameter_bound
-from designer.documents.document import Data, Flaw, Keys, Node, path_text, printable
+from designer.documents.document import Data, Flaw, Keys, printable
 from designer.documents.fields import QuantityField, WholeNumber
 from designer.effects.effect import Effect, Parameter
-from designer.io.config.entries import as_given
 from designer.spelling import did_you_mean, nearest_name
-from designer.study import DeclaredEffect, Entry
-from designer.units import describe, format_SI
+from designer.study import DeclaredEffect
+from designer.units import describe
 
 _SECTION = "effects"
 _MOST_LISTED = 8
@@ -55,19 +54,6 @@ def read_effects(data: Data, n_cables: int, effects_by_id: Mapping[str, Effect])
         else:
             _read_all(declared_effects, effect, content)
     return declared_effects
-
-
-def effect_entries(
-    data: Data, node: Node, n_cables: int, effects_by_id: Mapping[str, Effect]
-) -> Iterator[Entry]:
-    """Yield the rows of the table of inputs for a section without faults."""
-    for place, declared in read_effects(data, n_cables, effects_by_id).effects:
-        if declared.cable is not None:
-            yield Entry(path_text((*place, "cable")), str(declared.cable), str(declared.cable))
-        for parameter in effects_by_id[declared.id].parameters_for(n_cables):
-            at = (*place, parameter.name)
-            value_text = format_SI(declared.parameters[parameter.name], parameter.dimension)
-            yield Entry(path_text(at), as_given(node.at(at[1:])), value_text)
 
 
 def _read_all(declared_effects: Found, effect: Effect, data: Data) -> None:

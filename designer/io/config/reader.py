@@ -1,29 +1,32 @@
-"""From a config file to a study: read, check everything, build."""
+"""From a config file to a study: read, check everything, build, and list every field in SI."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
-from designer.documents.document import Document, path_text, read_document
+from designer.documents.document import Document, Key, Keys, Node, path_text, read_document
+from designer.documents.fields import QuantityField, reader_in
 from designer.documents.section import MOST_FAULTS, schema_faults
 from designer.effects.registry import SHIPPED, KnownEffects
 from designer.errors import InputError
 from designer.io.config.checks import all_faults
-from designer.io.config.effects import effect_entries, read_effects
-from designer.io.config.entries import all_entries
+from designer.io.config.columns import ColumnSection
+from designer.io.config.effects import read_effects
 from designer.io.config.machine import CableSection
-from designer.io.config.regions import RegionSection
+from designer.io.config.regions import OrientationSection, RegionSection
 from designer.io.config.schema import SelectionSection, StudySection
 from designer.model.cable import Material
 from designer.model.machine import Surroundings
 from designer.model.region import Region
 from designer.model.robot import Robot
 from designer.plugins.find import Plugins, find_plugins
-from designer.study import Entry, GradeFamily, Study, StudySource
-from designer.units import DENSITY, STRESS, format_SI
+from designer.study import DeclaredEffect, Entry, GradeFamily, Study, StudySource
+from designer.units import DENSITY, NUMBER, STRESS, Dimension, format_SI
 
 
 def read_study(
@@ -69,9 +72,8 @@ def study_of(
         section = section.model_copy(update={"name": path.stem})
     material, family = _material_and_family(section, document, plugins)
     entries = all_entries(section, document.root)
-    effects = document.root.child("effects")
-    if effects is not None:
-        entries += effect_entries(section.effects, effects, robot.n_cables, known.by_id)
+    declared = read_effects(section.effects, robot.n_cables, known.by_id).effects
+    entries += _effect_entries(declared, document.root, known, robot.n_cables)
     pose, workspace, selection = section.pose, section.workspace, section.selection
     measurements, uncertainty = section.measurements, section.uncertainty
     lines = {path_text(keys): node.line for keys, node in document.root.walk()}
@@ -91,10 +93,7 @@ def study_of(
         catalogues=tuple(folder / name for name in section.catalogues),
         measurements=None if measurements is None else measurements.measurements(folder),
         uncertainty=None if uncertainty is None else uncertainty.value(),
-        effects=tuple(
-            setting
-            for _, setting in read_effects(section.effects, robot.n_cables, known.by_id).effects
-        ),
+        effects=tuple(effect for _, effect in declared),
         known_effects=known,
         surroundings=Surroundings(section.surroundings.temperature),
         family=family,
@@ -171,3 +170,107 @@ def checked(document: Document, known: KnownEffects) -> StudySection:
         faults.sort(key=lambda fault: (fault.line or 0, fault.field))
         raise InputError(faults[:MOST_FAULTS])
     return section
+
+
+DEFAULT = "default"
+_MOST_ROWS = 64
+
+
+def all_entries(section: BaseModel, node: Node | None, place: tuple[Key, ...] = ()) -> list[Entry]:
+    """Return the entries of a section and all below it, in the order of the schema.
+
+    Fields and sections that the file leaves out are marked ``default``.
+    """
+    entries: list[Entry] = []
+    for name, info in type(section).model_fields.items():
+        value = getattr(section, name)
+        below = field_node(node, name, section)
+        if isinstance(value, BaseModel):
+            entries += all_entries(value, below, (*place, name))
+        else:
+            reader = reader_in(info.rebuild_annotation())
+            dimension = reader.dimension if isinstance(reader, QuantityField) else NUMBER
+            entries += _entries(value, below, (*place, name), dimension)
+    return entries
+
+
+def as_given(node: Node | None) -> str:
+    """Return a value as the file has it, ``default`` where it has none."""
+    return DEFAULT if node is None else node.as_written()
+
+
+def field_node(node: Node | None, name: str, section: BaseModel) -> Node | None:
+    """Return the node of a section's field, None where the file gives none.
+
+    A list in place of a section gives the section's first field.
+    """
+    if node is None:
+        return None
+    is_shorthand = isinstance(node.content, tuple)
+    is_first = name == next(iter(type(section).model_fields))
+    part_node = node if is_shorthand and is_first else node.child(name)
+    is_empty = part_node is None or (
+        isinstance(part_node.content, str) and part_node.data() is None
+    )
+    return None if is_empty else part_node
+
+
+def _entries(
+    value: Any, node: Node | None, place: tuple[Key, ...], dimension: Dimension
+) -> Iterator[Entry]:
+    if node is None:
+        yield Entry(path_text(place), DEFAULT, _in_SI(value, dimension))
+    elif isinstance(value, tuple) and value and isinstance(value[0], BaseModel):
+        for index, item in enumerate(value):
+            yield Entry(
+                path_text((*place, index)),
+                as_given(node.child(index)),
+                _in_words(item, node.child(index)),
+            )
+    elif isinstance(value, dict) and value:
+        for name, item in value.items():
+            if isinstance(item, tuple):
+                yield from _entries(item, node.child(name), (*place, name), NUMBER)
+            elif isinstance(item, ColumnSection):
+                yield Entry(path_text((*place, name)), as_given(node.child(name)), item.meaning)
+    elif not (isinstance(value, tuple) and value and isinstance(value[0], tuple)):
+        yield Entry(path_text(place), node.as_written(), _in_SI(value, dimension))
+    elif len(value) > _MOST_ROWS:
+        ends = f"{_in_SI(value[0], dimension)} … {_in_SI(value[-1], dimension)}"
+        yield Entry(path_text(place), f"{len(value)} rows", ends)
+    else:
+        for index, row in enumerate(value):
+            yield from _entries(row, node.child(index), (*place, index), dimension)
+
+
+def _in_words(section: BaseModel, node: Node | None) -> str:
+    """Return what a section in a list gives, in SI units."""
+    if isinstance(section, OrientationSection):
+        return str(section)
+    written = (entry for entry in all_entries(section, node) if entry.given != DEFAULT)
+    return ", ".join(f"{entry.field} {entry.value_SI}" for entry in written)
+
+
+def _in_SI(value: Any, dimension: Dimension) -> str:
+    if value is None or value in ((), {}):
+        return "none"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        return format_SI(value, dimension)
+    if isinstance(value, tuple):
+        return f"[{', '.join(_in_SI(item, NUMBER) for item in value)}] {dimension.unit}".rstrip()
+    return str(value)
+
+
+def _effect_entries(
+    declared: Sequence[tuple[Keys, DeclaredEffect]], root: Node, known: KnownEffects, n_cables: int
+) -> Iterator[Entry]:
+    """Yield the rows of the table of inputs for effects without faults, each with its place."""
+    for place, effect in declared:
+        if effect.cable is not None:
+            yield Entry(path_text((*place, "cable")), str(effect.cable), str(effect.cable))
+        for parameter in known.by_id[effect.id].parameters_for(n_cables):
+            at = (*place, parameter.name)
+            value_text = format_SI(effect.parameters[parameter.name], parameter.dimension)
+            yield Entry(path_text(at), as_given(root.at(at)), value_text)
