@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from designer.errors import Fault, InputError, one_line
-from designer.report import captions, phrases
 from designer.report import format as fmt
+from designer.report import phrases
 from designer.report.diagnosis import words
 from designer.resources import data_folder
 
@@ -66,7 +66,7 @@ def _filters() -> dict[str, Callable[..., object]]:
     """Return the public functions of the rooms of words, by name."""
     return {
         name: function
-        for module in (fmt, phrases, captions, words)
+        for module in (fmt, phrases, words)
         for name, function in vars(module).items()
         if isfunction(function) and not name.startswith("_")
     }

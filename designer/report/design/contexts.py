@@ -6,19 +6,21 @@ Beside it every template of a design report gets `shared`.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import zip_longest
 
 import numpy as np
 
 from designer.analysis.analyse import Analysis
+from designer.analysis.governing import GoverningPose
 from designer.grades.grade import Grade, Size
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.report import format as fmt
 from designer.report.design.drawings import Drawings
+from designer.report.design.first_page import by_title
 from designer.report.document import MOST_ROWS
 from designer.report.templates import Statement, plain_statement
 from designer.selection.candidate import Candidate
@@ -47,6 +49,39 @@ def shared(drawings: Drawings) -> Context:
         "most_rows": MOST_ROWS,
         "Verdict": Verdict,
     }
+
+
+def requirements(analysis: Analysis) -> Context:
+    """All that the study requires, and whether it holds."""
+    pose = analysis.governing
+    shown = {"requirements": by_title(analysis.requirements), "pose": pose}
+    if pose is None:
+        return shown
+    write = _alike(cable.exit_tension_N for cable in pose.cables)
+    return {
+        **shown,
+        "governing_cable": pose.cables[int(pose.alone.cable_tension_N.argmax())].cable,
+        "tensions": [write(one.exit_tension_N, one.platform_tension_N) for one in pose.cables],
+        "forces": _forces(pose),
+    }
+
+
+def _forces(pose: GoverningPose) -> list[tuple[str, list[str]]]:
+    """Return each force on the platform with its components, and their sum."""
+    named = [(f"cable {one.cable}", one.pull_N) for one in pose.cables]
+    write = _alike(float(x) for _, force in (*named, *pose.loads) for x in force)
+    rows = [(fmt.capital(name), [*write(*force)]) for name, force in (*named, *pose.loads)]
+    return [*rows, ("Sum", [*write(*(pose.force_sum_N.round(6) + 0.0))])]
+
+
+def _alike(forces_N: Iterable[float]) -> Callable[..., tuple[str, ...]]:
+    """Return what writes forces in one unit, the largest of these with five digits."""
+    largest_N = max((abs(float(x)) for x in forces_N), default=0.0)
+    unit, scale = fmt.force_unit(largest_N)
+    places = max(4 - math.floor(math.log10(max(largest_N / scale, 1.0))), 0)
+    return lambda *values: tuple(
+        f"{fmt.fixed(float(x) / scale, places)}\u00a0{unit}" for x in values
+    )
 
 
 def load_cases(analysis: Analysis) -> Context | None:

@@ -11,7 +11,6 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.maps import WorkspaceMaps, workspace_maps
 from designer.analysis.rope_maps import rope_maps
 from designer.report import format as fmt
-from designer.report.captions import LITTLE, sag_matters
 from designer.report.design.carries import STEP_M, shares_of_inputs, slopes_of_moves
 from designer.report.design.pose import weight_effect
 from designer.report.document import Drawing, in_space, vector
@@ -26,7 +25,7 @@ from designer.report.figures.interactive import workspace_scene_html
 from designer.report.figures.scenes import cover_scene, robot_scene, usable_scene, workspace_scene
 from designer.report.figures.sections import clearance_map, slice_panels, stiffness_map
 from designer.report.figures.stage import Image
-from designer.report.phrases import INPUT_NAMES
+from designer.report.phrases import INPUT_NAMES, LITTLE, sag_matters
 
 
 def chart(draw: Callable[[Drawings], str | None]) -> cached_property[Drawing | None]:

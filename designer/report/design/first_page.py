@@ -16,7 +16,6 @@ from designer.grades.grade import TRUST_MEANING, Grade, Size
 from designer.model.requirement import Requirement, State
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
-from designer.report.design.checks import unmet_by_title
 from designer.report.phrases import orientation_words
 from designer.selection.candidate import Candidate
 from designer.selection.efficiency import Allowance
@@ -131,6 +130,24 @@ def first_page(analysis: Analysis) -> Context:
         "massless": None if analysis.ropes is None else findings.massless_choice,
         "beside_fibre": _beside_fibre(analysis),
     }
+
+
+def by_title(requirements: Iterable[Requirement]) -> list[list[Requirement]]:
+    """Return the same requirement of all load cases together, in the order of the first."""
+    groups: dict[str, list[Requirement]] = {}
+    for requirement in requirements:
+        groups.setdefault(requirement.title, []).append(requirement)
+    return list(groups.values())
+
+
+def unmet_by_title(requirements: Iterable[Requirement]) -> list[list[Requirement]]:
+    """Return what does not hold, together by title: first what fails, then what is not known."""
+    unmet = list(requirements)
+    return [
+        same
+        for state in (State.FAILS, State.OPEN)
+        for same in by_title(each for each in unmet if each.state is state)
+    ]
 
 
 def _beside_fibre(analysis: Analysis) -> Context | None:

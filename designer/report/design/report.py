@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from designer.analysis.analyse import Analysis
-from designer.report.design import carries, checks, contexts, pose, selection, workspace
+from designer.report.design import carries, contexts, pose, selection, workspace
 from designer.report.design.contexts import Context, shared
 from designer.report.design.drawings import Drawings
 from designer.report.design.first_page import first_page
@@ -14,7 +14,7 @@ from designer.report.document import Report, Section, control_of
 SECTIONS: tuple[tuple[str, Callable[[Analysis], Context | None]], ...] = (
     ("answer", first_page),
     ("inputs", contexts.inputs),
-    ("checks", checks.requirements),
+    ("checks", contexts.requirements),
     ("carries", carries.sensitivities),
     ("uncertainty", contexts.uncertainty),
     ("load-cases", contexts.load_cases),
