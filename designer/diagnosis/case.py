@@ -15,7 +15,6 @@ from designer.diagnosis.problem import Predictor, Problem
 from designer.diagnosis.statistics import heldout_rows, spread
 from designer.effects.effect import NEEDS, Effect, Setting, as_built
 from designer.errors import InputError
-from designer.model.cable import Cable
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured, Noise
 from designer.model.measurements import Measurements
@@ -82,13 +81,7 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
             tension_noise_N=None if "tension" in estimated else measurements.tension_noise_N,
         )
     # The diagnosis asks no strength of the cable, and only laws of plugins ask its diameter.
-    cable = Cable(
-        diameter_m=measurements.diameter_m or float("nan"),
-        linear_density_kg_per_m=measurements.linear_density_kg_per_m,
-        axial_stiffness_N=measurements.axial_stiffness_N,
-        allowable_tension_N=float("inf"),
-    )
-    machine = Machine(study.robot, cable, surroundings=study.surroundings)
+    machine = Machine(study.robot, measurements.cable(), surroundings=study.surroundings)
     declared = declared_settings(study, machine)
     if not measured.has_poses and np.isnan(measured.poses.position_m).any():
         assert study.workspace is not None  # the config has been checked

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis import result
 from designer.diagnosis.case import case_of, first_noise
 from designer.diagnosis.errors_of import (
     Foretold,
@@ -21,14 +22,6 @@ from designer.diagnosis.errors_of import (
 from designer.diagnosis.fit import fit
 from designer.diagnosis.hold import structure_left
 from designer.diagnosis.problem import Problem
-from designer.diagnosis.result import (
-    Json,
-    effects_table,
-    framed,
-    reasons,
-    rows_dict,
-    structure_dict,
-)
 from designer.diagnosis.statistics import block_of
 from designer.diagnosis.structure import Structure
 from designer.documents.plain import json_text, record
@@ -174,7 +167,7 @@ class Check:
         names = {"without": self.without, "with": self.declared, "unknowns_fitted": self.fitted}
         models = {name: model for name, model in names.items() if model is not None}
 
-        def of_each(attribute: str) -> Json | None:
+        def of_each(attribute: str) -> result.Json | None:
             values = {name: getattr(model, attribute) for name, model in models.items()}
             return values if any(value is not None for value in values.values()) else None
 
@@ -183,7 +176,7 @@ class Check:
                 "all": self.measured.n_rows,
                 "compared": self.n_compared,
                 "not_held": of_each("n_not_held"),
-                **rows_dict(self.outliers, self.measured),
+                **result.rows_dict(self.outliers, self.measured),
             },
             "check": {
                 "length_m": of_each("length_m"),
@@ -192,12 +185,12 @@ class Check:
                 "helps": self.helps,
                 "stands": self.is_positive,
             },
-            "effects": effects_table(self.study.effects),
-            "idle": reasons(self.idle),
-            "unexplained": structure_dict(self.structure),
+            "effects": result.effects_table(self.study.effects),
+            "idle": result.reasons(self.idle),
+            "unexplained": result.structure_dict(self.structure),
             "noise": self.noise,
         }
-        return framed(answer, self.study, self.measured)
+        return result.framed(answer, self.study, self.measured)
 
     def to_json(self) -> str:
         """Return the text of ``diagnosis.json``."""

@@ -117,20 +117,11 @@ def mounted_use(study: Study) -> Use | None:
     rope, workspace, selection = study.measurements, study.workspace, study.selection
     if rope is None or workspace is None or selection is None:
         return None
-    if rope.minimum_breaking_load_N is None:
-        return None
-    termination_efficiency = selection.termination_efficiency
+    bending = 1.0
     if selection.sheave_diameter_m and rope.diameter_m:
-        bent = bending_efficiency(selection.sheave_diameter_m / rope.diameter_m)
-        if math.isnan(bent):  # outside the rule
-            return None
-        termination_efficiency = min(termination_efficiency, bent)
-    cable = Cable(
-        diameter_m=rope.diameter_m or math.nan,
-        linear_density_kg_per_m=rope.linear_density_kg_per_m,
-        axial_stiffness_N=rope.axial_stiffness_N,
-        allowable_tension_N=rope.minimum_breaking_load_N
-        * termination_efficiency
-        / selection.safety_factor,
-    )
-    return _use(as_built_by(study, mounted=True), workspace, cable)
+        bending = bending_efficiency(selection.sheave_diameter_m / rope.diameter_m)
+    if rope.minimum_breaking_load_N is None or math.isnan(bending):  # outside the rule
+        return None
+    efficiency = min(selection.termination_efficiency, bending)
+    allowable_N = rope.minimum_breaking_load_N * efficiency / selection.safety_factor
+    return _use(as_built_by(study, mounted=True), workspace, rope.cable(allowable_N))

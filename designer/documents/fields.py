@@ -14,17 +14,10 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
+from designer import units
 from designer.documents.bounds import BOUNDS
 from designer.documents.document import printable
 from designer.documents.formats import why_unreadable
-from designer.units import (
-    NUMBER,
-    Dimension,
-    QuantityError,
-    describe,
-    format_SI,
-    read_quantity,
-)
 
 LONGEST_TEXT = 1000
 NONE = "none"
@@ -71,7 +64,7 @@ class QuantityField(Reader):
     It must exceed ``above`` and may reach the others; ``reason`` says why not beyond.
     """
 
-    dimension: Dimension
+    dimension: units.Dimension
     above: float | None = None
     at_least: float | None = None
     at_most: float | None = None
@@ -80,12 +73,12 @@ class QuantityField(Reader):
     def read(self, given: object) -> float:
         """Return the SI value, or refuse it."""
         try:
-            value = read_quantity(given, self.dimension)
-        except QuantityError as error:
+            value = units.read_quantity(given, self.dimension)
+        except units.QuantityError as error:
             raise refusal(error.problem, error.expected) from None
         bound = self._broken_bound(value)
         if bound:
-            raise refusal(f"{describe(given)} is out of range", f"{bound}{self._hint(given)}")
+            raise refusal(f"{units.describe(given)} is out of range", f"{bound}{self._hint(given)}")
         return value
 
     def json_schema(self) -> JsonSchema:
@@ -104,19 +97,19 @@ class QuantityField(Reader):
             return ""
         meant = f"{given:.10g} mm" if isinstance(given, int | float) and unit == "m" else ""
         try:
-            fits = meant and not self._broken_bound(read_quantity(meant, self.dimension))
-        except QuantityError:
+            fits = meant and not self._broken_bound(units.read_quantity(meant, self.dimension))
+        except units.QuantityError:
             fits = False
         return f"; a bare number is in {unit}" + (f", did you mean '{meant}'?" if fits else "")
 
     def _broken_bound(self, value: float) -> str:
         why = f": {self.reason}" if self.reason else ""
         if self.above is not None and value <= self.above:
-            return f"more than {format_SI(self.above, self.dimension)}"
+            return f"more than {units.format_SI(self.above, self.dimension)}"
         if self.at_least is not None and value < self.at_least:
-            return f"at least {format_SI(self.at_least, self.dimension)}{why}"
+            return f"at least {units.format_SI(self.at_least, self.dimension)}{why}"
         if self.at_most is not None and value > self.at_most:
-            return f"at most {format_SI(self.at_most, self.dimension)}{why}"
+            return f"at most {units.format_SI(self.at_most, self.dimension)}{why}"
         return ""
 
 
@@ -145,13 +138,13 @@ class WholeNumber(Reader):
         """Return the number, or refuse it."""
         expected = f"a whole number from {self.least} to {self.most}"
         try:
-            value = read_quantity(given, NUMBER)
-        except QuantityError as error:
+            value = units.read_quantity(given, units.NUMBER)
+        except units.QuantityError as error:
             raise refusal(error.problem, expected) from None
         if value != int(value):
-            raise refusal(f"{describe(given)} is not a whole number", expected)
+            raise refusal(f"{units.describe(given)} is not a whole number", expected)
         if not self.least <= value <= self.most:
-            raise refusal(f"{describe(given)} is out of range", expected)
+            raise refusal(f"{units.describe(given)} is out of range", expected)
         return int(value)
 
     def json_schema(self) -> JsonSchema:
@@ -199,7 +192,9 @@ class _ListOf:
 
     def _check(self, given: object) -> object:
         if not isinstance(given, list | tuple):
-            raise refusal(f"{describe(given)} is not a list", self.expected + in_brackets(given))
+            raise refusal(
+                f"{units.describe(given)} is not a list", self.expected + in_brackets(given)
+            )
         if not self.least <= len(given) <= self.most:
             count = f"{len(given)} value" + "s" * (len(given) != 1)
             raise refusal(f"the list has {count}", self.expected)
@@ -226,7 +221,7 @@ def only_word(word: str, expected: str) -> BeforeValidator:
 
     def check(given: object) -> object:
         if given != word:
-            raise refusal(f"{describe(given)} is not known", expected + in_brackets(given))
+            raise refusal(f"{units.describe(given)} is not known", expected + in_brackets(given))
         return given
 
     return BeforeValidator(check)
@@ -241,7 +236,7 @@ def in_brackets(value: object) -> str:
 
 def _text(given: object) -> str:
     if not isinstance(given, str):
-        raise refusal(f"{describe(given)} is not a text", "a text; quotes make a number one")
+        raise refusal(f"{units.describe(given)} is not a text", "a text; quotes make a number one")
     if not 1 <= len(given.strip()) <= LONGEST_TEXT:
         raise refusal(f"the text has {len(given.strip())} characters", f"1 to {LONGEST_TEXT}")
     return given
@@ -267,14 +262,14 @@ def different(names: tuple[str, ...]) -> tuple[str, ...]:
     """Return the names unchanged, or refuse them if one stands twice."""
     twice = next((name for index, name in enumerate(names) if name in names[:index]), None)
     if twice is not None:
-        raise refusal(f"{describe(twice)} is named twice", "each name once")
+        raise refusal(f"{units.describe(twice)} is named twice", "each name once")
     return names
 
 
 def mapping(value: object) -> object:
     """Return the mapping unchanged, or refuse what is given."""
     if not isinstance(value, dict):
-        raise refusal(f"{describe(value)} is not a mapping", "a mapping such as {}")
+        raise refusal(f"{units.describe(value)} is not a mapping", "a mapping such as {}")
     return value
 
 

@@ -7,24 +7,16 @@ from typing import Annotated, Literal, Self, get_args
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
+from designer import units
 from designer.documents.fields import QuantityField, Temperature, Text, bounded, list_of, refusal
 from designer.documents.section import FileValue, Section
 from designer.model.cable import Stiffening
-from designer.units import (
-    AREA,
-    FORCE,
-    LENGTH,
-    LINEAR_DENSITY,
-    QuantityError,
-    describe,
-    read_quantity,
-)
 
 DIMENSIONS = {
-    "diameter": LENGTH,
-    "minimum_breaking_load": FORCE,
-    "linear_mass": LINEAR_DENSITY,
-    "metallic_area": AREA,
+    "diameter": units.LENGTH,
+    "minimum_breaking_load": units.FORCE,
+    "linear_mass": units.LINEAR_DENSITY,
+    "metallic_area": units.AREA,
 }
 """The figures of a size, each with what it is."""
 
@@ -35,12 +27,12 @@ def unit_of(figure: str) -> BeforeValidator:
 
     def check(unit: object) -> str:
         if not isinstance(unit, str):
-            raise refusal(f"{describe(unit)} is not a unit", f"a unit of {dimension.noun}")
+            raise refusal(f"{units.describe(unit)} is not a unit", f"a unit of {dimension.noun}")
         try:
-            read_quantity(f"1 {unit}", dimension)
-        except QuantityError:
+            units.read_quantity(f"1 {unit}", dimension)
+        except units.QuantityError:
             expected = f"a unit of {dimension.noun} such as '{dimension.unit}'"
-            raise refusal(f"{describe(unit)} does not fit", expected) from None
+            raise refusal(f"{units.describe(unit)} does not fit", expected) from None
         return unit
 
     return BeforeValidator(check)

@@ -15,16 +15,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from designer.grades import parts
 from designer.grades.grade import Grade, Size
-from designer.grades.parts import (
-    AreaFactor,
-    ComputedFigure,
-    Modulus,
-    Reference,
-    ReferenceArea,
-    SheaveRatio,
-    ThermalExpansion,
-)
 
 WIRE_GRADES_MPA = (1570, 1770, 1960, 2160)
 """Tensile grades of the wires [MPa]."""
@@ -94,7 +86,7 @@ FACTORS = (
 )
 """``6x19`` and ``8x19`` are the parallel-laid ropes: Seale, filler and Warrington."""
 
-_SOURCE = Reference(
+_SOURCE = parts.Reference(
     publisher="EN 12385-4",
     document="factors K, C and W, as in K. Feyrer, Wire Ropes, table 1.9",
     url=(
@@ -105,15 +97,15 @@ _SOURCE = Reference(
 _STRETCH = "https://strandcore.com/resources/technical-resources/wire-rope-stretch/"
 
 
-def _stretch_modulus(value_GPa: float, factor: str, lender: str, area: str = "") -> Modulus:
+def _stretch_modulus(value_GPa: float, factor: str, lender: str, area: str = "") -> parts.Modulus:
     """Modulus on the circle, or on the metal of an aircraft cable, which has more of it there."""
     over = f", over a metallic area of {area} d^2 (USITT, third hand)" if area else ""
     source = f"Strand Core, stretch factor G = {factor} of galvanised {lender}{over}; {_STRETCH}"
-    kind: ReferenceArea = "metallic" if area else "nominal"
-    return Modulus(value_GPa * 1e9, kind, "borrowed", source, 0.15)
+    kind: parts.ReferenceArea = "metallic" if area else "nominal"
+    return parts.Modulus(value_GPa * 1e9, kind, "borrowed", source, 0.15)
 
 
-_FIBRE_CORE = Modulus(
+_FIBRE_CORE = parts.Modulus(
     46.7e9,
     "nominal",
     "borrowed",
@@ -121,7 +113,7 @@ _FIBRE_CORE = Modulus(
     "moorwire.py; https://github.com/ddjokic/Mooring-Line-Properties",
     0.15,
 )
-_ANY_ROPE = Modulus(
+_ANY_ROPE = parts.Modulus(
     103.4e9,
     "metallic",
     "borrowed",
@@ -145,11 +137,11 @@ _RATIOS = (
     "https://industrialrope.com//catalog-wire-rope/sheave-and-drum-ratios/"
 )
 _SHEAVES = {
-    "6x7": SheaveRatio(72, 42, f"for 6x7: {_RATIOS}"),
-    "6x19": SheaveRatio(51, 34, f"for 6x19 Seale: {_RATIOS}"),
-    "6x36 WS": SheaveRatio(35, 23, f"for 6x36 WS: {_RATIOS}"),
-    "8x19": SheaveRatio(41, 27, f"for 8x19 Seale: {_RATIOS}"),
-    "18x7": SheaveRatio(51, 34, f"for 19x7: {_RATIOS}"),
+    "6x7": parts.SheaveRatio(72, 42, f"for 6x7: {_RATIOS}"),
+    "6x19": parts.SheaveRatio(51, 34, f"for 6x19 Seale: {_RATIOS}"),
+    "6x36 WS": parts.SheaveRatio(35, 23, f"for 6x36 WS: {_RATIOS}"),
+    "8x19": parts.SheaveRatio(41, 27, f"for 8x19 Seale: {_RATIOS}"),
+    "18x7": parts.SheaveRatio(51, 34, f"for 19x7: {_RATIOS}"),
 }
 
 
@@ -193,15 +185,17 @@ def standard_rope(
         material="steel",
         standard="EN 12385-4",
         wire_grade=f"{wire_grade_MPa} N/mm2",
-        area_factor=AreaFactor(factors.metallic_area, "printed", "factor C of EN 12385-4"),
-        thermal_expansion=ThermalExpansion(
+        area_factor=parts.AreaFactor(factors.metallic_area, "printed", "factor C of EN 12385-4"),
+        thermal_expansion=parts.ThermalExpansion(
             12.5e-6, "borrowed", "Metalico, data sheet of galvanised messenger strand"
         ),
         sheave_ratio=_SHEAVES.get(construction),
         computed=(
-            ComputedFigure("minimum_breaking_load", f"K d^2 Rr, K = {factors.breaking_force:.3f}"),
-            ComputedFigure("linear_mass", f"W d^2, W = {factors.mass:.3f} kg/(100 m mm2)"),
-            ComputedFigure("metallic_area", f"C d^2, C = {factors.metallic_area:.3f}"),
+            parts.ComputedFigure(
+                "minimum_breaking_load", f"K d^2 Rr, K = {factors.breaking_force:.3f}"
+            ),
+            parts.ComputedFigure("linear_mass", f"W d^2, W = {factors.mass:.3f} kg/(100 m mm2)"),
+            parts.ComputedFigure("metallic_area", f"C d^2, C = {factors.metallic_area:.3f}"),
         ),
         notes=(
             "Nominal: computed by the standard's factors, not a product.",
@@ -219,7 +213,7 @@ def standard_ropes() -> Iterator[Grade]:
             yield standard_rope(factors, wire_grade_MPa)
 
 
-def _modulus(factors: Factors) -> Modulus:
+def _modulus(factors: Factors) -> parts.Modulus:
     interval = _MODULI.get((factors.construction, factors.core))
     if interval is not None:
         return interval

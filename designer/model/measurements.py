@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from designer import checked
+from designer.model.cable import Cable
 
 Reading = Literal["length", "tension"]
 POSES = "poses"
@@ -77,6 +79,15 @@ class Measurements(checked.Value):
     minimum_breaking_load_N: checked.Positive | None = None
     estimated_noise: tuple[Reading, ...] = ()
     search_time_s: checked.NotNegative = 600.0
+
+    def cable(self, allowable_tension_N: float = math.inf) -> Cable:
+        """Return the cable on the machine; its diameter is NaN where it is not given."""
+        return Cable(
+            diameter_m=self.diameter_m or math.nan,
+            linear_density_kg_per_m=self.linear_density_kg_per_m,
+            axial_stiffness_N=self.axial_stiffness_N,
+            allowable_tension_N=allowable_tension_N,
+        )
 
     @property
     def declared_noise(self) -> dict[str, float]:

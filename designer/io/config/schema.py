@@ -22,35 +22,11 @@ from pydantic import (
 from designer.arrays import FloatArray, frozen_array
 from designer.documents import fields
 from designer.documents.bounds import MOST_CABLES, MOST_SAMPLES
-from designer.documents.fields import (
-    FormatOf,
-    Text,
-    WholeNumber,
-    different,
-    in_brackets,
-    list_of,
-    mapping,
-    not_empty,
-    only_word,
-    refusal,
-)
 from designer.documents.formats import CONFIG_FORMAT
 from designer.documents.section import Section, config_field
+from designer.io.config import regions
 from designer.io.config.columns import Columns
 from designer.io.config.machine import ConfiguredCable, LoadCaseSection, RobotSection
-from designer.io.config.regions import (
-    EULER,
-    QUATERNION,
-    ROTATION_VECTOR,
-    AnyRegion,
-    EulerSection,
-    OrientationRangeSection,
-    OrientationSection,
-    Quaternion,
-    only_one_of,
-    rotation_vector_rad,
-    word_or_list,
-)
 from designer.io.config.uncertainty import UncertaintySection
 from designer.model.measurements import LogColumn, Measurements, Reading
 from designer.model.region import Sampling
@@ -63,31 +39,35 @@ from designer.units import describe
 _GRADES = "'all' or a list of grade ids"
 Objectives = Annotated[
     tuple[Objective, ...],
-    list_of(1, 5, "a list of objectives such as [mass, drum_diameter]"),
-    AfterValidator(different),
+    fields.list_of(1, 5, "a list of objectives such as [mass, drum_diameter]"),
+    AfterValidator(fields.different),
 ]
 Readings = Annotated[
     tuple[Reading, ...],
-    list_of(0, 2, "a list of readings: length, tension or both"),
-    AfterValidator(different),
+    fields.list_of(0, 2, "a list of readings: length, tension or both"),
+    AfterValidator(fields.different),
 ]
-Names = Annotated[tuple[Text, ...], list_of(0, 1000, "a list")]
+Names = Annotated[tuple[fields.Text, ...], fields.list_of(0, 1000, "a list")]
 CableNumbers = Annotated[
-    tuple[Annotated[int, WholeNumber(1, MOST_CABLES)], ...],
-    list_of(1, MOST_CABLES, "a list of one or more cable numbers, such as [1, 2]"),
+    tuple[Annotated[int, fields.WholeNumber(1, MOST_CABLES)], ...],
+    fields.list_of(1, MOST_CABLES, "a list of one or more cable numbers, such as [1, 2]"),
 ]
-Groups = Annotated[dict[Text, CableNumbers], BeforeValidator(mapping), AfterValidator(not_empty)]
+Groups = Annotated[
+    dict[fields.Text, CableNumbers],
+    BeforeValidator(fields.mapping),
+    AfterValidator(fields.not_empty),
+]
 
 
 ORIENTATION_KINDS = ("orientation", "orientations", "orientation_range")
 TurnList = Annotated[
-    tuple[OrientationSection, ...],
-    list_of(1, 100, "1 to 100 orientations such as [0, 0, 10 deg]"),
+    tuple[regions.OrientationSection, ...],
+    fields.list_of(1, 100, "1 to 100 orientations such as [0, 0, 10 deg]"),
 ]
 GradeIds = Annotated[
-    Annotated[Literal["all"], only_word("all", _GRADES), Tag("a word")]
-    | Annotated[tuple[Text, ...], list_of(1, 1000, _GRADES), Tag("a list")],
-    Discriminator(word_or_list),
+    Annotated[Literal["all"], fields.only_word("all", _GRADES), Tag("a word")]
+    | Annotated[tuple[fields.Text, ...], fields.list_of(1, 1000, _GRADES), Tag("a list")],
+    Discriminator(regions.word_or_list),
 ]
 
 
@@ -96,21 +76,23 @@ class PoseSection(Section):
 
     position: fields.Point = config_field(expected="three lengths [x, y, z]")
     """Origin of the platform's frame in the world frame."""
-    rotation_vector: fields.Rotation = ROTATION_VECTOR
-    quaternion: Quaternion | None = QUATERNION
-    euler: EulerSection | None = EULER
+    rotation_vector: fields.Rotation = regions.ROTATION_VECTOR
+    quaternion: regions.Quaternion | None = regions.QUATERNION
+    euler: regions.EulerSection | None = regions.EULER
 
     @model_validator(mode="before")
     @classmethod
     def _from_list(cls, given: object) -> object:
-        if in_brackets(given):
-            raise refusal(f"{describe(given)} is not a list", "[x, y, z]" + in_brackets(given))
-        return {"position": given} if isinstance(given, list) else only_one_of(given)
+        if fields.in_brackets(given):
+            raise fields.refusal(
+                f"{describe(given)} is not a list", "[x, y, z]" + fields.in_brackets(given)
+            )
+        return {"position": given} if isinstance(given, list) else regions.only_one_of(given)
 
     @property
     def turn_rad(self) -> FloatArray:
         """Rotation vector (3,) [rad]."""
-        return rotation_vector_rad(self.rotation_vector, self.quaternion, self.euler)
+        return regions.rotation_vector_rad(self.rotation_vector, self.quaternion, self.euler)
 
     def poses(self) -> Poses:
         """Return it as poses, of which it is one."""
@@ -120,15 +102,15 @@ class PoseSection(Section):
 class WorkspaceSection(Section):
     """Which poses the cable must serve."""
 
-    region: AnyRegion = config_field(
+    region: regions.AnyRegion = config_field(
         expected="one of {prism, z}, {box}, {points} and {rectangle, z}"
     )
     """Where the platform works: one of prism, box, points and rectangle."""
-    samples: Annotated[int, WholeNumber(1, MOST_SAMPLES)] = 20_000
+    samples: Annotated[int, fields.WholeNumber(1, MOST_SAMPLES)] = 20_000
     """Number of positions of the region that are tried."""
     sampling: Sampling = config_field("Kind of samples", "low_discrepancy")
     """An even random spread (low_discrepancy), or a grid."""
-    seed: Annotated[int, WholeNumber(0, 2**32 - 1)] = 0
+    seed: Annotated[int, fields.WholeNumber(0, 2**32 - 1)] = 0
     """Of the random spread; another one tries other positions."""
     hangs_below: HangsBelow = config_field("Cables that hang below", "include")
     """Whether poses in which a cable hangs below the platform count."""
@@ -141,18 +123,18 @@ class WorkspaceSection(Section):
     given; of the configured cable only if given. The word none lifts it."""
     proof: fields.ProofTime = config_field("Time for the proof", 20.0)
     """How long to try to prove that the chosen rope holds in all poses; 0 for not at all."""
-    orientation: OrientationSection | None = None
+    orientation: regions.OrientationSection | None = None
     """How the platform is turned at every position."""
     orientations: TurnList | None = None
     """Several orientations, all of them asked for at every position."""
-    orientation_range: OrientationRangeSection | None = None
+    orientation_range: regions.OrientationRangeSection | None = None
     """All rotation vectors between two ends a component, zero where left out, asked for at
     every position."""
 
     @model_validator(mode="before")
     @classmethod
     def _one_kind_of_orientation(cls, value: object) -> object:
-        return only_one_of(value, ORIENTATION_KINDS, "the workspace")
+        return regions.only_one_of(value, ORIENTATION_KINDS, "the workspace")
 
     def workspace(self, exit_points_m: FloatArray) -> Workspace:
         """Return the workspace over these exit points (n_cables, 3) [m]."""
@@ -208,7 +190,7 @@ class SelectionSection(Section):
     groups: Groups | None = None
     """Cables that may get a rope of their own: names, each with its cable numbers, counted from
     1 in the order of the anchors."""
-    max_distinct_products: Annotated[int, WholeNumber(1, MOST_CABLES)] | None = config_field(
+    max_distinct_products: Annotated[int, fields.WholeNumber(1, MOST_CABLES)] | None = config_field(
         "Different ropes"
     )
     """How many different ropes the groups of cables may have between them."""
@@ -263,7 +245,7 @@ class NoiseSection(Section):
 class MeasurementsSection(Section):
     """Data measured on the built machine."""
 
-    file: Text = config_field(expected="the name of a CSV file")
+    file: fields.Text = config_field(expected="the name of a CSV file")
     """The table, a CSV file, relative to this file."""
     columns: Columns = Field(default_factory=dict)
     """What the file's columns are, where their names are not ours."""
@@ -310,41 +292,35 @@ class SurroundingsSection(Section):
 class DocumentSection(Section):
     """What a drawing office writes on the report."""
 
-    number: Text | None = None
+    number: fields.Text | None = None
     """Number of the document."""
-    revision: Text | None = None
+    revision: fields.Text | None = None
     """Its revision."""
-    author: Text | None = None
+    author: fields.Text | None = None
     """Who made it."""
-    checker: Text | None = None
+    checker: fields.Text | None = None
     """Who checked it."""
-    approver: Text | None = None
+    approver: fields.Text | None = None
     """Who approved it."""
-    logo: Text | None = None
+    logo: fields.Text | None = None
     """A picture for the head, PNG, JPEG or SVG, relative to this file."""
 
     def control(self, folder: Path) -> DocumentControl:
         """Return the head of the report, with its logo from this folder."""
-        return DocumentControl(
-            self.number or "",
-            self.revision or "",
-            self.author or "",
-            self.checker or "",
-            self.approver or "",
-            None if self.logo is None else folder / self.logo,
-        )
+        texts = {name: text or "" for name, text in self if name != "logo"}
+        return DocumentControl(**texts, logo=None if self.logo is None else folder / self.logo)
 
 
 LoadCases = Annotated[
     tuple[LoadCaseSection, ...],
-    list_of(0, 50, "a list of at most 50 load cases such as [{name: hoisting, …}]"),
+    fields.list_of(0, 50, "a list of at most 50 load cases such as [{name: hoisting, …}]"),
 ]
 
 
 class StudySection(Section):
     """The whole file."""
 
-    name: Text | None = None
+    name: fields.Text | None = None
     """Title of the report."""
     robot: RobotSection = config_field(
         "Robot and load", expected="a mapping with anchors and platform"
@@ -379,5 +355,5 @@ class StudySection(Section):
     uncertainty: UncertaintySection | None = None
     """How surely inputs are known: how likely the chosen rope is enough. What is left out is
     certain."""
-    format: Annotated[int, FormatOf(CONFIG_FORMAT)] = 1
+    format: Annotated[int, fields.FormatOf(CONFIG_FORMAT)] = 1
     """Format of this file, for later versions of the program."""
