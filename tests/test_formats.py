@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from designer import __version__
-from designer.documents.formats import RESULT_FORMAT
+from designer.documents.plain import RESULT_FORMAT
 from designer.errors import InputError
 from designer.grades.files import read_grade
 from designer.io.config import read_study

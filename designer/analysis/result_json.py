@@ -12,8 +12,7 @@ from designer.analysis.load_cases_json import load_cases_dict
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.selection_json import selection_dict
 from designer.analysis.uncertainty_json import uncertainty_dict
-from designer.documents.formats import RESULT_FORMAT
-from designer.documents.plain import plain, record
+from designer.documents.plain import RESULT_FORMAT, plain, record
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.selection.qualities import Qualities

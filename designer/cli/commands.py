@@ -256,7 +256,7 @@ def diagnose(
     from designer.diagnosis.check import Check, check
     from designer.diagnosis.design import with_design
     from designer.diagnosis.diagnose import diagnose_study
-    from designer.io.diagnosis_files import diagnosed_config
+    from designer.io.results import diagnosed_config
     from designer.report.diagnosis.report import write_check, write_diagnosis
 
     doing = "checking" if checks else "searching"

@@ -88,7 +88,9 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     # Whatever is decided on the way is decided without them: noise, effects, what is withdrawn.
     seen = replace(case, measured=measured.without_readings(heldout))
     if not measured.has_poses:
-        hidden = _taken_up(seen, ~heldout)
+        noise = first_noise(seen.measurements, seen.measured, seen.predictor(), ~heldout)
+        unfitted = Problem(seen.measured, seen.predictor(), noise)
+        hidden = dict(taken_up(unfitted, (*seen.given, *seen.candidates), (), ~heldout))
         case, seen = _without(case, hidden), _without(seen, hidden)
     outcome = _with_settled_noise(seen, ~heldout, progress)
     problem = Problem(measured, predict, outcome.problem.noise)
@@ -241,13 +243,6 @@ def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tup
             pair = (outcome.fit.settings, swapped.settings)
             answer.append(propose(problem, region, *pair, (key, rival)))
     return tuple(answer)
-
-
-def _taken_up(case: Case, rows: BoolArray) -> dict[str, str]:
-    """Return effects that poses which nobody measured take up, and why."""
-    noise = first_noise(case.measurements, case.measured, case.predictor(), rows)
-    problem = Problem(case.measured, case.predictor(), noise)
-    return dict(taken_up(problem, (*case.given, *case.candidates), (), rows))
 
 
 def _without(case: Case, hidden: Mapping[str, str]) -> Case:

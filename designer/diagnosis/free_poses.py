@@ -83,7 +83,10 @@ class FreePredictor(Predictor):
                 still = _STILL * np.maximum(1.0, np.abs(residual).max(axis=1))
                 if np.all(np.abs(rest).max(axis=1) < still):
                     self._near[kind] = poses, slopes
-                    return _further(answer, rest, noise)
+                    # And a last short step, which takes that off what is left.
+                    true, displayed = answer
+                    sigma = noise.of_channels(displayed.length_m.shape[1])
+                    return true, Readings(*np.hsplit(displayed.stacked + sigma * rest, 2))
                 trial = moved_poses(self.machine.robot, poses, step)
                 answer, residual_trial = self._left_at(trial, settings, noise)
                 closer = _loss(residual_trial) <= _loss(residual)
@@ -196,15 +199,6 @@ def _step(slopes: FloatArray, residual: FloatArray) -> FloatArray:
     least = 1e-13 * np.trace(square, axis1=1, axis2=2) + np.finfo(np.float64).tiny
     ridge = least[:, None, None] * np.eye(square.shape[-1])
     return np.asarray(np.linalg.solve(square + ridge, pull[..., None])[..., 0])
-
-
-def _further(
-    answer: tuple[Readings, Readings], rest: FloatArray, noise: Noise
-) -> tuple[Readings, Readings]:
-    """Return readings after a last short step, which takes ``rest`` off what is left."""
-    true, displayed = answer
-    sigma = noise.of_channels(displayed.length_m.shape[1])
-    return true, Readings(*np.hsplit(displayed.stacked + sigma * rest, 2))
 
 
 def _loss(values: FloatArray) -> FloatArray:

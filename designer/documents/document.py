@@ -346,10 +346,7 @@ class Composer:
         return Node(line, content, False, size, height, start, end, is_flow=is_flow)
 
     def _items(self, keys: Keys) -> tuple[Node, ...]:
-        items: list[Node] = []
-        for event in self._until_end():
-            items.append(self._node(event, (*keys, len(items))))
-        return tuple(items)
+        return tuple(self._node(event, (*keys, k)) for k, event in enumerate(self._until_end()))
 
     def _fields(self, keys: Keys) -> dict[str, Node]:
         import yaml

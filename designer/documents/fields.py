@@ -17,7 +17,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from designer import units
 from designer.documents.bounds import BOUNDS
 from designer.documents.document import printable
-from designer.documents.formats import why_unreadable
+from designer.documents.plain import why_unreadable
 
 LONGEST_TEXT = 1000
 NONE = "none"

@@ -12,7 +12,7 @@ from designer.diagnosis.case import case_of, first_noise
 from designer.diagnosis.diagnose import diagnose_study
 from designer.diagnosis.problem import Problem, channel_names
 from designer.explore.question import Question
-from designer.io.diagnosis_files import diagnosed_config
+from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
 from designer.model.measured_data import Measured
 

@@ -237,10 +237,8 @@ def _in_one_line(text: str) -> str:
 
 def _quoted(text: str) -> str:
     """Return a text in quotes; what YAML lets in no file is escaped, as JSON does not."""
-    return "".join(
-        letter if letter.isprintable() else f"\\U{ord(letter):08x}"
-        for letter in json.dumps(text, ensure_ascii=False)
-    )
+    quoted = json.dumps(text, ensure_ascii=False)
+    return "".join(x if x.isprintable() else f"\\U{ord(x):08x}" for x in quoted)
 
 
 def _number(value: float) -> str:

@@ -21,7 +21,7 @@ from typing import Annotated, Literal, get_args
 from pydantic import Field
 
 from designer.documents.fields import FormatOf, bounded, list_of
-from designer.documents.formats import GRADE_FORMAT
+from designer.documents.plain import GRADE_FORMAT
 from designer.documents.section import FileValue, ReadAs
 from designer.grades.parts import (
     AreaFactor,

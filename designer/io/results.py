@@ -1,4 +1,4 @@
-"""Results as files: ``result.json`` and what stands beside it."""
+"""Results as files: ``result.json``, what stands beside it, and a config after a diagnosis."""
 
 from __future__ import annotations
 
@@ -6,13 +6,21 @@ import json
 import shutil
 from pathlib import Path
 
+import numpy as np
+
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import Json
 from designer.analysis.selection_json import candidates_csv
-from designer.documents.formats import RESULT_FORMAT, why_unreadable
+from designer.diagnosis.design import declared_by
+from designer.diagnosis.result import Diagnosis, effects_table
+from designer.documents.document import decode, document_of
+from designer.documents.edits import scalar, with_section, with_value
 from designer.documents.opened import read_input
+from designer.documents.plain import RESULT_FORMAT, why_unreadable
 from designer.errors import Fault, InputError
+from designer.io.config.moved import moved_to, path_from
 from designer.io.output import write_whole
+from designer.model.measured_data import KINDS
 
 _RESULT = "a result.json that `designer report` wrote"
 
@@ -53,3 +61,52 @@ def read_result(path: Path) -> Json:
     if "workspace" not in values:  # an optimise.json would compare as a result of nothing
         raise InputError.at(path, "is no result", _RESULT)
     return {"format": 1, **values}
+
+
+def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None) -> str:
+    """Return the text of the config with the whole model in it.
+
+    What was fitted and what was found go under ``effects``, noise that was estimated under
+    ``measurements.noise``. The rest stays as its author laid it out, but for paths in it, which
+    are rewritten for a config that lies in ``folder``. The ``text`` of the config is what its
+    file holds, if left out.
+    """
+    source, measured = diagnosis.study.source.path, diagnosis.study.measurements
+    assert measured is not None
+    if text is None:
+        text = decode(read_input(source), str(source))
+    text = moved_to(folder, text, document_of(text.encode(), str(source)), source.parent)
+    # The data are not always those that the config names.
+    places: dict[tuple[str, ...], str] = {("file",): scalar(path_from(folder, measured.file))}
+    if noise := _estimated_noise(diagnosis):
+        places |= {("noise", kind): str(size) for kind, size in noise.items()}
+        places["noise", "estimated"] = f"[{', '.join(noise)}]"
+    for place, value in places.items():
+        text = with_value(text, ("measurements", *place), value)
+    effects = effects_table(declared_by(diagnosis))
+    return with_section(text, "effects", effects, _origin(diagnosis))
+
+
+def _origin(diagnosis: Diagnosis) -> str:
+    """Return where the effects come from, for whoever reads the config later."""
+    measured = diagnosis.study.measurements
+    assert measured is not None
+    lines = [
+        f"From the diagnosis of {measured.file.name}, SHA-256 {diagnosis.measured.sha256[:16]}"
+    ]
+    for kind, *errors in diagnosis.errors:
+        was, now = (kind.scale * error.heldout.value for error in errors)
+        lines.append(f"{kind.name} error on unseen rows {was:.3g} -> {now:.3g} {kind.unit}")
+    return "; ".join(lines)
+
+
+def _estimated_noise(diagnosis: Diagnosis) -> dict[str, float]:
+    """Return the noise that nobody declared, of readings that there are."""
+    measurements = diagnosis.study.measurements
+    assert measurements is not None
+    declared = measurements.declared_noise.keys() - {*measurements.estimated_noise}
+    return {
+        kind.name: float(kind.of(diagnosis.noise))
+        for kind in KINDS
+        if kind.name not in declared and np.isfinite(kind.of(diagnosis.measured)).any()
+    }

@@ -15,7 +15,7 @@ from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose
 from designer.io.config import read_study
 from designer.io.config.moved import SCHEMA_FILE, with_modeline
-from designer.io.diagnosis_files import diagnosed_config
+from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
 
 

@@ -22,7 +22,7 @@ from designer.diagnosis.statistics import heldout_rows
 from designer.errors import InputError
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
-from designer.io.diagnosis_files import diagnosed_config
+from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
 from designer.model.robot import Poses
 from designer.statics.inverse import solve_sagging

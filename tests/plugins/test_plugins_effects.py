@@ -22,7 +22,7 @@ from designer.effects.load import load_effects
 from designer.effects.registry import EFFECTS, SHIPPED, KnownEffects
 from designer.errors import EffectError, InputError
 from designer.io.config import read_study
-from designer.io.diagnosis_files import diagnosed_config
+from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
 from designer.plugins.find import find_plugins
 from designer.study import Study, as_built_by, declared_settings

@@ -22,7 +22,7 @@ from pydantic import (
 from designer.arrays import FloatArray, frozen_array
 from designer.documents import fields
 from designer.documents.bounds import MOST_CABLES, MOST_SAMPLES
-from designer.documents.formats import CONFIG_FORMAT
+from designer.documents.plain import CONFIG_FORMAT
 from designer.documents.section import Section, config_field
 from designer.io.config import regions
 from designer.io.config.columns import Columns
