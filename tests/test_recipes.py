@@ -25,6 +25,7 @@ from designer.plugins.find import find_plugins
 from designer.report.design.report import design_report
 from designer.report.figures.charts_shares import parts
 from designer.report.render import render_html
+from designer.resources import example_file
 from designer.selection import criteria
 from designer.statics.inverse import Statics
 from designer.workspace.result import Census
@@ -93,7 +94,7 @@ def test_a_requirement_is_asked_wherever_the_others_are(monkeypatch: pytest.Monk
         )
 
     monkeypatch.setattr(criteria, "_of_workspace", asked)
-    session = Session.example("yard", find_plugins(with_plugins=False))
+    session = Session.open(example_file("yard"), find_plugins(with_plugins=False))
     session.edit("workspace.samples", "500")
     session.edit("workspace.proof", "0 s")
     question = session.question()

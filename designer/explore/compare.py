@@ -99,7 +99,7 @@ _FIGURES: tuple[tuple[str, str, float, Callable[[Pin], float | None]], ...] = (
         "Mass of all cables, best rope",
         "kg",
         1.0,
-        lambda p: p.best.total_mass_kg if p.best else None,
+        lambda p: p.best.figures.mass_kg if p.best else None,
     ),
 )
 """Title, unit, what leads to it from SI, and the figure of a state; None where it is not known."""

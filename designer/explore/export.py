@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, fields
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, Literal
 
@@ -35,6 +36,30 @@ COLUMNS = {
     "unserved": "unserved",
 }
 """Names of the quantities in files."""
+_ROPE_COLUMNS = {
+    "grade": "grade.id",
+    "size_id": "size.id",
+    "maker": "grade.manufacturer",
+    "product": "grade.product",
+    "construction": "grade.construction",
+    "material": "grade.material",
+    "trust": "grade.trust",
+    "doubt": "size.doubt",
+    "diameter_m": "size.diameter_m",
+    "linear_mass_kg_per_m": "size.linear_density_kg_per_m",
+    "breaking_load_N": "size.minimum_breaking_load_N",
+    "allowable_tension_N": "allowable_tension_N",
+    "utilisation": "verification.utilisation",
+    "max_tension_N": "verification.max_tension_N",
+    "total_mass_kg": "figures.mass_kg",
+    "cost": "figures.cost",
+    "drum_diameter_m": "figures.drum_diameter_m",
+    "stiffness_N_per_m": "figures.stiffness_N_per_m",
+    "standing": "standing",
+    "reason": "reason",
+    "is_searched": "verification.is_refined",
+}
+"""Of each column of the table of ropes, what a row has there."""
 _ALL = CHEAP | {"stiffness", "unserved"}
 
 
@@ -98,9 +123,7 @@ def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Written:
         tables["map.csv"] = _csv([*columns], (dict(zip(columns, row, strict=True)) for row in rows))
     ropes = ropes or quick_ropes(question)
     if ropes is not None:
-        names = [f.name for f in fields(RopeRow) if f.name not in ("rope", "place")]
-        names = ["grade", "size_id", *names, "x_m", "y_m", "z_m"]
-        tables["ropes.csv"] = _csv(names, map(_rope, ropes.rows))
+        tables["ropes.csv"] = _csv([*_ROPE_COLUMNS, "x_m", "y_m", "z_m"], map(_rope, ropes.rows))
     with output_folder(folder) as building:
         for name, text in tables.items():
             (building / name).write_bytes(text.encode())
@@ -109,18 +132,16 @@ def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Written:
 
 def map_columns(chart: MapAnswer) -> dict[str, Any]:
     """Return the columns of all points of a map (n_points,), by their names with SI units."""
-    positions = np.concatenate([grid.reshape(-1, 3) for grid in chart.grids.values()])
-    columns: dict[str, Any] = dict(zip(("x_m", "y_m", "z_m"), positions.T, strict=True))
+    columns = dict(zip(("x_m", "y_m", "z_m"), chart.positions_m.T, strict=True))
     return columns | {
-        name: chart.all_of(key) for key, name in COLUMNS.items() if len(chart.all_of(key))
+        name: chart.values[key] for key, name in COLUMNS.items() if key in chart.values
     }
 
 
 def _rope(row: RopeRow) -> dict[str, Any]:
-    names = {"grade": row.rope.grade_id, "size_id": row.rope.size_id}
     place = [None] * 3 if row.place is None else row.place[:3].tolist()
-    figures = {f.name: getattr(row, f.name) for f in fields(row) if f.name not in ("rope", "place")}
-    return {**names, **figures, **dict(zip(("x_m", "y_m", "z_m"), place, strict=True))}
+    figures = {name: attrgetter(path)(row) for name, path in _ROPE_COLUMNS.items()}
+    return figures | dict(zip(("x_m", "y_m", "z_m"), place, strict=True))
 
 
 def _csv(names: Sequence[str], rows: Iterable[dict[str, Any]]) -> str:
@@ -143,8 +164,8 @@ def _vtk(question: Question, target: Path) -> Written:
         is_list = grid.shape[1] == 1
         axes = (grid[..., axis][..., None] for axis in range(3))
         piece = pv.PolyData(grid[:, 0]) if is_list else pv.StructuredGrid(*axes)
-        for key, values in chart.values[name].items():
-            piece.point_data[COLUMNS[key]] = values.T.ravel()  # VTK counts the first axis first
+        for key in chart.values:  # VTK counts the first axis first
+            piece.point_data[COLUMNS[key]] = chart.on(name, key).T.ravel()
         pieces.append(piece, name)
     with output_folder(target.parent) as building:
         pieces.combine().save(building / target.name)

@@ -57,9 +57,7 @@ class Field:
         None of a choice, and of what is not given.
     text : str
         As the file has it; where the file does not have it, its default, empty for none.
-    is_given : bool
-        Whether the text has it.
-    low, high, step : float or None
+    low, high : float or None
         Sensible ends of a slider [SI]; None for no slider.
     is_log : bool
         Whether the slider goes by factors.
@@ -80,10 +78,8 @@ class Field:
     kind: Kind
     value_SI: float | None
     text: str
-    is_given: bool
     low: float | None = None
     high: float | None = None
-    step: float | None = None
     is_log: bool = False
     choices: tuple[str, ...] = ()
     is_optional: bool = False
@@ -268,7 +264,6 @@ def _field(slot: _Slot, sizes: Sizes) -> Field:
         "path": path_text(slot.place),
         "group": words_at(StudySection, str(slot.place[0]))[0],
         "label": label,
-        "is_given": slot.given is not None,
         "is_optional": slot.is_optional,
     }
     if slot.reader is None:
@@ -334,4 +329,4 @@ def with_ends_of(one: Field, file: Field | None) -> Field:
         return one
     if not file.low <= one.value_SI <= file.high:
         return one
-    return replace(one, low=file.low, high=file.high, step=file.step, is_log=file.is_log)
+    return replace(one, low=file.low, high=file.high, is_log=file.is_log)

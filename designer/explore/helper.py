@@ -8,17 +8,33 @@ stop. It stays for the next such work, since starting takes a second or two.
 from __future__ import annotations
 
 import atexit
+import os
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
+from pathlib import Path
 from pickle import UnpicklingError
 from typing import Any
 
-from designer.explore.process import work
-from designer.explore.requests import Kind, Message, Request, failure_text
-from designer.io.process import SPAWN
+import numpy as np
+
+from designer.effects.load import load_effects
+from designer.errors import InputError
+from designer.explore.question import (
+    Kind,
+    Long,
+    Message,
+    Question,
+    Request,
+    ThrottledReporter,
+    failure_text,
+)
+from designer.explore.reading import Context
+from designer.io.process import SPAWN, end_with_parent, settle_in
+from designer.plugins.find import find_plugins
 
 _GRACE_S = 3.0
 """How long a process may take to clear away what it has half-written."""
@@ -167,3 +183,52 @@ class Helper:
 
 _NOTHING: Any = object()
 """In place of a request: nothing is wanted."""
+
+
+# In the process
+
+
+def work(connection: Connection) -> None:
+    """Do task after task, until nobody listens, and send what a `Message` has but its request."""
+    end_with_parent()
+    settle_in()
+    if hasattr(os, "nice"):
+        os.nice(5)  # the window comes first
+
+    def report(task: str, steps: int, total: int) -> None:
+        connection.send({"status": "progress", "text": task, "steps": steps, "total": total})
+
+    reporter = ThrottledReporter(report)
+    with suppress(EOFError, OSError):  # nobody listens any more
+        while True:
+            task = connection.recv()
+            try:
+                connection.send({"status": "done", "answer": _answer(task, reporter)})
+            except Exception as error:
+                connection.send({"status": "failed", "text": failure_text(error)})
+
+
+def _answer(task: dict[str, Any], reporter: ThrottledReporter) -> Any:
+    from designer.explore.export import export
+    from designer.explore.measurements import diagnosis_answer
+    from designer.explore.plans import optimised_study, sweep_study
+    from designer.explore.ropes import full_ropes
+
+    answers: dict[Long, Callable[..., Any]] = {
+        "select": full_ropes,
+        "diagnose": diagnosis_answer,
+        "export": export,
+        "optimise": optimised_study,
+        "sweep": sweep_study,
+    }
+    return answers[task["kind"]](_question(task), reporter, **task["options"])
+
+
+def _question(task: dict[str, Any]) -> Question:
+    plugins = find_plugins(task["with_plugins"])
+    path = Path(task["path"])
+    reading = Context(path, load_effects(plugins), plugins).read(task["text"])
+    if reading.study is None:
+        raise InputError(reading.faults)
+    place = np.array(task["place"])
+    return Question(reading.study, place, task["rope"], task["text"], path, plugins)

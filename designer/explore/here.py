@@ -51,11 +51,6 @@ class CableHere:
     utilisation: float
     hangs_below: bool
 
-    @property
-    def sag_over_chord(self) -> float:
-        """How far it strays, over the straight distance between its ends."""
-        return self.sag_m / self.chord_m
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Here:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.explore.quantities import BY_KEY, CHEAP
 from designer.explore.question import Question, Rope, RopePerCable
 from designer.model.cable import Cable, Cables
@@ -48,13 +48,12 @@ class MapAnswer:
     ----------
     grids : mapping of str to array (n, m, 3)
         Positions [m], see `map_grids`; empty without a workspace.
-    values : mapping of str to mapping of str to array (n, m)
-        Of each grid the values by the keys of `designer.explore.quantities`, SI, each position in
-        the orientation that asks for the most there; NaN where there is none. Beside them, as 0
-        and 1, ``left_out`` (what the study leaves out) and, where it was asked for, ``unserved``
-        (what no rope serves that no other one beats).
-    is_fine : bool
-        Whether all rows and columns of the grids are there.
+    values : mapping of str to array (n_points,)
+        Of all points of the grids, one grid after the other, the values by the keys of
+        `designer.explore.quantities`, SI, each position in the orientation that asks for the most
+        there; NaN where there is none. Beside them, as 0 and 1, ``left_out`` (what the study leaves
+        out) and, where it was asked for, ``unserved`` (what no rope serves that no other one
+        beats).
     rope : Rope, RopePerCable or None
         What tensions are of; None for the thinnest cable of the family at each pose.
     before : MapAnswer or None
@@ -62,29 +61,38 @@ class MapAnswer:
     """
 
     grids: Mapping[str, FloatArray]
-    values: Mapping[str, Values]
-    is_fine: bool
+    values: Values
     rope: Rope | RopePerCable | None = None
     before: MapAnswer | None = None
 
-    def difference(self, grid: str, key: str) -> FloatArray | None:
-        """Return what a quantity has become less what it was, SI; None without a comparison.
+    @property
+    def positions_m(self) -> FloatArray:
+        """All points of the grids (n_points, 3) [m]."""
+        return np.concatenate([np.empty((0, 3)), *(g.reshape(-1, 3) for g in self.grids.values())])
+
+    def points_of(self, grids: Iterable[str]) -> IntArray:
+        """Return the numbers of the points of some grids."""
+        ends = np.cumsum([grid[..., 0].size for grid in self.grids.values()])
+        numbers = dict(zip(self.grids, np.split(np.arange(sum(ends[-1:])), ends[:-1]), strict=True))
+        return np.concatenate([np.empty(0, dtype=int), *(numbers[name] for name in grids)])
+
+    def on(self, grid: str, key: str) -> FloatArray:
+        """Return the values of a quantity on a grid (n, m)."""
+        return self.values[key][self.points_of([grid])].reshape(self.grids[grid].shape[:2])
+
+    def difference(self, key: str) -> FloatArray | None:
+        """Return what a quantity has become less what it was (n_points,), SI; None without A.
 
         NaN where there is none in either state. Categories have no difference but whether they are
         another one, 1, or not, 0.
         """
-        if self.before is None or key not in self.before.values[grid]:
+        if self.before is None or key not in self.before.values:
             return None
-        now, was = self.values[grid][key], self.before.values[grid][key]
+        now, was = self.values[key], self.before.values[key]
         if key in BY_KEY and BY_KEY[key].is_category:
             both_nan = np.isnan(now) & np.isnan(was)
             return np.asarray((now != was) & ~both_nan, dtype=np.float64)
         return np.asarray(now - was)
-
-    def all_of(self, key: str) -> FloatArray:
-        """Return the values of one quantity on all grids (n_points,), for a common scale."""
-        each = [values[key].ravel() for values in self.values.values() if key in values]
-        return np.concatenate(each) if each else np.empty(0)
 
 
 def map_grids(region: Region, slice_share: float, *, fine: bool) -> Mapping[str, FloatArray]:
@@ -109,7 +117,6 @@ def map_answer(
     *,
     fine: bool = False,
     slice_share: float = 0.5,
-    parts: frozenset[str] | None = None,
     quantities: frozenset[str] = CHEAP,
     against: Question | None = None,
 ) -> MapAnswer:
@@ -119,8 +126,6 @@ def map_answer(
     ----------
     fine, slice_share
         Of the grids, see `map_grids`.
-    parts : frozenset of str, optional
-        Names of the grids to compute; all if left out.
     quantities : frozenset of str
         Keys of what is asked for, with ``unserved`` among them; what costs nothing more is there
         as well. The less, the quicker.
@@ -128,30 +133,14 @@ def map_answer(
         A state to compare with, at the same positions.
     """
     if question.workspace is None:
-        return MapAnswer({}, {}, fine, question.rope)
+        return MapAnswer({}, {}, question.rope)
     grids = map_grids(question.workspace.region, slice_share, fine=fine)
-    grids = {name: grid for name, grid in grids.items() if parts is None or name in parts}
-    before = None
+    positions_m, before = MapAnswer(grids, {}).positions_m, None
     if against is not None and against.workspace is not None:
-        values = _on_grids(against, against.workspace, grids, quantities)
-        before = MapAnswer(grids, values, fine, against.rope)
-    values = _on_grids(question, question.workspace, grids, quantities)
-    return MapAnswer(grids, values, fine, question.rope, before)
-
-
-def _on_grids(
-    question: Question, workspace: Workspace, grids: Mapping[str, FloatArray], keys: frozenset[str]
-) -> Mapping[str, Values]:
-    if not grids:
-        return {}
-    flat = np.concatenate([grid.reshape(-1, 3) for grid in grids.values()])
-    ends = np.cumsum([grid[..., 0].size for grid in grids.values()])[:-1]
-    values = values_at(question, workspace, flat, keys)
-    parts = {key: np.split(column, ends) for key, column in values.items()}
-    return {
-        name: {key: columns[k].reshape(grid.shape[:2]) for key, columns in parts.items()}
-        for k, (name, grid) in enumerate(grids.items())
-    }
+        values = values_at(against, against.workspace, positions_m, quantities)
+        before = MapAnswer(grids, values, against.rope)
+    values = values_at(question, question.workspace, positions_m, quantities)
+    return MapAnswer(grids, values, question.rope, before)
 
 
 def values_at(
@@ -182,10 +171,11 @@ def _values(
     if cable is not None:
         statics = _worst_with(question, workspace, positions_m, cable)
     used = _used(statics, cable)
+    governing_cable = np.nan_to_num(used, nan=-np.inf).argmax(axis=-1)
     found |= {
         "utilisation": used.max(axis=-1),
         "tension": statics.largest_tension_N,
-        "governing": _governing(statics, used),
+        "governing": np.where(statics.is_solved, governing_cable + 1.0, np.nan),
         "verdict": statics.verdict.astype(np.float64),
         "left_out": is_left_out(statics, workspace.hangs_below).astype(np.float64),
     }
@@ -221,12 +211,6 @@ def _used(statics: Statics, cable: Cable | Cables | None) -> FloatArray:
     if cable is None:
         return np.asarray(tension / tension.max(axis=-1, keepdims=True))
     return np.asarray(tension / cable.allowable_tension_N)
-
-
-def _governing(statics: Statics, used: FloatArray) -> FloatArray:
-    """Return the number of the cable that is used most."""
-    most = np.nan_to_num(used, nan=-np.inf).argmax(axis=-1)
-    return np.where(statics.is_solved, most + 1.0, np.nan)
 
 
 def unserved(question: Question, workspace: Workspace, positions_m: FloatArray) -> BoolArray:

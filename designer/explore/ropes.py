@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.selection_json import candidates_csv
 from designer.arrays import FloatArray
 from designer.explore.question import Question, Rope, RopePerCable
 from designer.grades.grade import Grade, Size
@@ -18,71 +17,55 @@ from designer.proof.prove import Proof
 from designer.selection.candidate import Candidate
 from designer.selection.compare import burdens, failure_words, is_undominated
 from designer.selection.groups.result import GroupChoice
+from designer.selection.objectives import UNKNOWN, CandidateFigures
 from designer.selection.result import SelectionResult
 from designer.selection.select import at_samples
-from designer.selection.verify import Verification
-from designer.study import Objective
+from designer.selection.verify import NOT_TRIED, Verification
 
 _QUICK_SAMPLES = 1500
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RopeRow:
-    """One size of one grade; NaN where a figure is not known.
+    """One size of one grade, and what became of it.
 
     Parameters
     ----------
-    rope : Rope
-        Its names, by which it is chosen.
-    maker, product, construction, material : str
-        As the catalogue has them; ``material`` empty where it does not say.
-    trust, doubt : str
-        How far to trust the figures, see `designer.grades.grade.TRUST_MEANING`; and why this size
-        may be wrong, empty for nothing.
-    diameter_m, linear_mass_kg_per_m, breaking_load_N : float
-        As sold.
-    allowable_tension_N : float
-        With end fittings, bending and safety factor.
-    utilisation, max_tension_N : float
-        Largest over the workspace; inf where a pose is not held.
-    total_mass_kg, cost, drum_diameter_m, stiffness_N_per_m : float
-        What ropes are compared by.
-    standing : str
-        As `designer.selection.result.Standing`, or ``not_tried``.
+    grade, size
+        As the catalogue has them.
     reason : str
         Why it is the best, or falls out.
-    place : array (6,) or None
-        Where it is used most [m, rad].
-    is_searched : bool
-        Whether the worst pose was searched for between the samples as well.
+    standing : str
+        As `designer.selection.result.Standing`, or ``not_tried``.
+    allowable_tension_N : float
+        With end fittings, bending and safety factor; NaN where it was not tried.
+    verification, figures
+        What it meets over the workspace, and what ropes are compared by.
     """
 
-    rope: Rope
-    maker: str
-    product: str
-    construction: str
-    material: str
-    trust: str
-    doubt: str
-    diameter_m: float
-    linear_mass_kg_per_m: float
-    breaking_load_N: float
-    allowable_tension_N: float = math.nan
-    utilisation: float = math.nan
-    max_tension_N: float = math.nan
-    total_mass_kg: float = math.nan
-    cost: float = math.nan
-    drum_diameter_m: float = math.nan
-    stiffness_N_per_m: float = math.nan
+    grade: Grade
+    size: Size
+    reason: str
     standing: str = "not_tried"
-    reason: str = ""
-    place: FloatArray | None = None
-    is_searched: bool = False
+    allowable_tension_N: float = math.nan
+    verification: Verification = NOT_TRIED
+    figures: CandidateFigures = UNKNOWN
+
+    @property
+    def rope(self) -> Rope:
+        """Its names, by which it is chosen."""
+        return Rope(self.grade.id, self.size.id)
 
     @property
     def holds(self) -> bool:
         """Whether it is strong enough and fails nothing else, as far as it was looked at."""
-        return self.utilisation <= 1.0 and self.standing != "rejected"
+        return self.verification.holds and self.standing != "rejected"
+
+    @property
+    def place(self) -> FloatArray | None:
+        """Where it is used most (6,) [m, rad]; None where that is not known."""
+        place = self.verification.worst_place
+        return np.pad(place, (0, 6 - len(place))) if np.isfinite(place).all() else None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,17 +80,11 @@ class Ropes:
         The best by the study's objectives.
     reason : str
         Why none is.
-    objectives : tuple of str
-        What they are compared by, the one that decides first.
-    currency : str
-        Of the costs; empty where there are no prices.
     is_final : bool
         Whether this is the full selection, as in the report; else what a part of the samples tells,
         which is no proof.
     groups : GroupChoice or None
         What groups of cables get, where the study has some and the selection is full.
-    csv : str
-        ``candidates.csv`` as the report has it; empty unless final.
     problems : tuple of str
         What plugins and grade files gave that could not be used, one line each.
     proof : Proof or None
@@ -121,11 +98,8 @@ class Ropes:
     rows: tuple[RopeRow, ...]
     best: Rope | None
     reason: str
-    objectives: tuple[Objective, ...]
-    currency: str
     is_final: bool
     groups: GroupChoice | None = None
-    csv: str = ""
     problems: tuple[str, ...] = ()
     proof: Proof | None = None
     requirements: tuple[Requirement, ...] = ()
@@ -146,12 +120,12 @@ class Ropes:
     @property
     def makers(self) -> tuple[str, ...]:
         """All makers, sorted."""
-        return tuple(sorted({row.maker for row in self.rows}))
+        return tuple(sorted({row.grade.manufacturer for row in self.rows}))
 
     @property
     def materials(self) -> tuple[str, ...]:
         """All materials, sorted."""
-        return tuple(sorted({row.material for row in self.rows if row.material}))
+        return tuple(sorted({row.grade.material for row in self.rows if row.grade.material}))
 
 
 def quick_ropes(question: Question) -> Ropes | None:
@@ -177,15 +151,8 @@ def quick_ropes(question: Question) -> Ropes | None:
     )
     reason = "" if best else "none holds at the samples" if not holding else "needs the full search"
     chosen = None if best is None else Rope(best.grade.id, best.size.id)
-    return Ropes(
-        rows,
-        chosen,
-        reason,
-        selection.objectives,
-        currency="",
-        is_final=False,
-        problems=question.catalogue.problems,
-    )
+    problems = question.catalogue.problems
+    return Ropes(rows, chosen, reason, is_final=False, problems=problems)
 
 
 def _quick_row(candidate: Candidate, is_best: bool, is_in_front: bool) -> RopeRow:
@@ -205,42 +172,10 @@ def _quick_row(candidate: Candidate, is_best: bool, is_in_front: bool) -> RopeRo
     return _row(candidate, standing, reason)
 
 
-def _row(candidate: Candidate, standing: str, reason: str, is_searched: bool = False) -> RopeRow:
-    verification, figures = candidate.verification, candidate.figures
-    return replace(
-        _sold(candidate.grade, candidate.size),
-        allowable_tension_N=candidate.cable.allowable_tension_N,
-        utilisation=verification.utilisation,
-        max_tension_N=verification.max_tension_N,
-        total_mass_kg=figures.mass_kg,
-        cost=figures.cost,
-        drum_diameter_m=figures.drum_diameter_m,
-        stiffness_N_per_m=figures.stiffness_N_per_m,
-        standing=standing,
-        reason=reason,
-        place=_place(verification),
-        is_searched=is_searched,
-    )
-
-
-def _place(verification: Verification) -> FloatArray | None:
-    place = verification.worst_place
-    return np.pad(place, (0, 6 - len(place))) if np.isfinite(place).all() else None
-
-
-def _sold(grade: Grade, size: Size) -> RopeRow:
-    return RopeRow(
-        rope=Rope(grade.id, size.id),
-        maker=grade.manufacturer,
-        product=grade.product,
-        construction=grade.construction,
-        material=grade.material or "",
-        trust=grade.trust,
-        doubt=size.doubt or "",
-        diameter_m=size.diameter_m,
-        linear_mass_kg_per_m=size.linear_density_kg_per_m,
-        breaking_load_N=size.minimum_breaking_load_N,
-    )
+def _row(candidate: Candidate, standing: str, reason: str) -> RopeRow:
+    allowable_tension_N = candidate.cable.allowable_tension_N
+    met = candidate.verification, candidate.figures
+    return RopeRow(candidate.grade, candidate.size, reason, standing, allowable_tension_N, *met)
 
 
 def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes:
@@ -254,7 +189,7 @@ def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes:
     if study.workspace is not None and study.selection is None:
         asking = replace(study, selection=question.selection)
         of_ropes = Analysis.begin(asking, catalogue, reporter=reporter)
-    ropes = Ropes((), None, "", question.selection.objectives, currency="", is_final=True)
+    ropes = Ropes((), None, "", is_final=True)
     if of_ropes.selection is not None:
         ropes = ropes_of(of_ropes.selection, of_ropes.groups)
     return replace(
@@ -270,7 +205,7 @@ def ropes_of(selection: SelectionResult, groups: GroupChoice | None = None) -> R
     chosen = selection.chosen
     rows = [_full_row(candidate) for candidate in selection.candidates]
     rows += [
-        replace(_sold(omitted.grade, size), reason=omitted.reason)
+        RopeRow(omitted.grade, size, omitted.reason)
         for omitted in selection.not_tried
         for size in (omitted.grade.sizes if omitted.size is None else (omitted.size,))
     ]
@@ -278,11 +213,8 @@ def ropes_of(selection: SelectionResult, groups: GroupChoice | None = None) -> R
         rows=tuple(rows),
         best=None if chosen is None else Rope(chosen.grade.id, chosen.size.id),
         reason=selection.reason or "",
-        objectives=selection.objectives,
-        currency=selection.currency or "",
         is_final=True,
         groups=groups,
-        csv=candidates_csv(selection),
         proof=selection.proof,
     )
 
@@ -290,4 +222,4 @@ def ropes_of(selection: SelectionResult, groups: GroupChoice | None = None) -> R
 def _full_row(candidate: Candidate) -> RopeRow:
     fails = any(requirement.state is State.FAILS for requirement in candidate.requirements)
     standing = "rejected" if fails else candidate.standing
-    return _row(candidate, standing, candidate.reason, candidate.verification.is_refined)
+    return _row(candidate, standing, candidate.reason)

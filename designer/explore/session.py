@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, Self
 
@@ -13,17 +13,35 @@ from designer.arrays import FloatArray, frozen_array
 from designer.documents import edits
 from designer.effects.load import load_effects
 from designer.errors import Fault, InputError, OutputError
-from designer.explore.entries import pose_text, put_back, with_entry
 from designer.explore.fields import Field, with_ends_of
-from designer.explore.history import History, Rejected, SessionState
 from designer.explore.question import Question, Rope, RopePerCable, first_place
-from designer.explore.reading import Context, Reading, text_of
+from designer.explore.reading import (
+    Context,
+    Reading,
+    Rejected,
+    SessionState,
+    pose_text,
+    put_back,
+    text_of,
+    with_entry,
+)
 from designer.io.output import write_file
 from designer.plugins.find import Plugins
-from designer.resources import example_file
+from designer.resources import example_file, example_names
 from designer.study import Study
 
 OnDisk = Literal["same", "changed", "gone", "never saved"]
+_MOST_STEPS = 1000
+"""Some hours of edits; each holds a text and what was read of it."""
+
+
+@dataclass(slots=True)
+class _Step:
+    """What was done, the state that it led to, and the ``key`` of what may go on with it."""
+
+    label: str
+    state: SessionState
+    key: object = None
 
 
 class Session:
@@ -49,11 +67,13 @@ class Session:
         self._question: tuple[SessionState, Question] | None = None
         self._fields: tuple[Reading, Reading, tuple[Field, ...]] | None = None
         place = first_place(self._saved.study)
-        self._history = History(SessionState(self._saved, self._saved, place))
+        self._steps = [_Step("", SessionState(self._saved, self._saved, place))]
+        self._at = 0
+        """Which of these steps was the last one; those after it were undone."""
 
     @classmethod
     def open(cls, path: Path, plugins: Plugins) -> Self:
-        """Open a study file, faulty or not.
+        """Open a study file, faulty or not; a shipped one is saved elsewhere.
 
         Raises
         ------
@@ -61,20 +81,16 @@ class Session:
             If it cannot be read, or is no text.
         """
         text = text_of(path)
-        return cls(text, Context(path, load_effects(plugins), plugins), path)
-
-    @classmethod
-    def example(cls, name: str, plugins: Plugins) -> Self:
-        """Open a shipped study, which is saved elsewhere."""
-        path = example_file(name)
-        return cls(text_of(path), Context(path, load_effects(plugins), plugins), None)
+        is_shipped = path.stem in example_names() and path == example_file(path.stem)
+        context = Context(path, load_effects(plugins), plugins)
+        return cls(text, context, None if is_shipped else path)
 
     # What there is
 
     @property
     def state(self) -> SessionState:
         """The present state."""
-        return self._history.state
+        return self._steps[self._at].state
 
     @property
     def path(self) -> Path:
@@ -185,10 +201,6 @@ class Session:
         self._take(label, path if continuous else None, reading, moves=path.startswith("pose."))
         return ()
 
-    def drop_rejected(self, path: str) -> None:
-        """Forget an entry that was refused."""
-        self.rejected.pop(path, None)
-
     def put_back(self, path: str) -> tuple[Fault, ...]:
         """Make one field as it is in the file; return what stands against it, nothing if done."""
         self.rejected.pop(path, None)
@@ -250,7 +262,7 @@ class Session:
 
     def begin_with(self, rope: Rope | RopePerCable | None) -> None:
         """Look at a rope that nobody chose; nothing that could be undone."""
-        self._history.state = replace(self.state, rope=rope)
+        self._steps[self._at].state = replace(self.state, rope=rope)
 
     def set_pin(self, pin: object) -> None:
         """Compare with a state from now on; with nothing for None."""
@@ -259,7 +271,7 @@ class Session:
 
     def settle(self) -> None:
         """End what was going on: the next continuous change is a step of its own."""
-        self._history.settle()
+        self._steps[self._at].key = None
 
     def _take(
         self,
@@ -276,7 +288,13 @@ class Session:
             changes |= {"reading": reading, "live": live}
             if moves and reading.study is not None:
                 changes["place"] = first_place(reading.study)
-        self._history.take(label, replace(self.state, **changes), key)
+        state, last = replace(self.state, **changes), self._steps[self._at]
+        del self._steps[self._at + 1 :]
+        if key is not None and last.key == key:
+            last.state = state
+        else:
+            self._steps = [*self._steps, _Step(label, state, key)][-_MOST_STEPS:]
+            self._at = len(self._steps) - 1
 
     def _with_entries(self, entries: dict[str, str]) -> Reading:
         """Return what the last sound text is with entries in it, by path."""
@@ -292,23 +310,26 @@ class Session:
     @property
     def undo_label(self) -> str:
         """What would be undone; empty for nothing."""
-        return self._history.done[-1].label if self._history.done else ""
+        return self._steps[self._at].label if self._at else ""
 
     @property
     def redo_label(self) -> str:
         """What would be done again; empty for nothing."""
-        return self._history.undone[-1].label if self._history.undone else ""
+        return "".join(step.label for step in self._steps[self._at + 1 :][:1])
 
     def undo(self) -> None:
         """Take back the last step, if there is one."""
-        self.rejected.clear()
-        self._history.undo()
-        self._stay_here()
+        self._go_to(max(self._at - 1, 0))
 
     def redo(self) -> None:
         """Do the step again that was undone last, if there is one."""
+        self._go_to(min(self._at + 1, len(self._steps) - 1))
+
+    def _go_to(self, step: int) -> None:
         self.rejected.clear()
-        self._history.redo()
+        self.settle()
+        self._at = step
+        self.settle()
         self._stay_here()
 
     def _stay_here(self) -> None:
@@ -319,7 +340,7 @@ class Session:
             live = reading
             if reading.study is None:
                 live = self._context.read(state.live.moved_to(self.path.parent))
-            self._history.state = replace(state, reading=reading, live=live)
+            self._steps[self._at].state = replace(state, reading=reading, live=live)
 
     # Files
 

@@ -15,7 +15,6 @@ from designer.io.config.schema import StudySection
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.units import ANGLE, FORCE, LENGTH, MOMENT, TEMPERATURE
 
-_STEPS = 200
 _FACTOR = 4.0
 _TURN_RAD = math.radians(45.0)
 _DEGREES = 40.0
@@ -65,19 +64,19 @@ class Sizes:
 
 
 def count_slider(value: float | None, low: int, high: int, plain: str) -> dict[str, Any]:
-    """Return low, high, step and is_log of a whole number; nothing where none makes sense."""
+    """Return low, high and is_log of a whole number; nothing where none makes sense."""
     if value is None or plain.endswith("seed"):
         return {}
     is_log = high > 1000
     ends = (max(low, 100), min(high, 200_000)) if is_log else (low, min(high, 12))
     lowest, highest = min(ends[0], value), max(ends[1], value)
-    return {"low": float(lowest), "high": float(highest), "step": 1.0, "is_log": is_log}
+    return {"low": float(lowest), "high": float(highest), "is_log": is_log}
 
 
 def slider(
     plain: str, place: Sequence[Key], value: float | None, reader: QuantityField, sizes: Sizes
 ) -> dict[str, Any]:
-    """Return low, high, step and is_log of a quantity; nothing where none makes sense."""
+    """Return low, high and is_log of a quantity; nothing where none makes sense."""
     least = -math.inf if reader.at_least is None else reader.at_least
     largest = math.inf if reader.at_most is None else reader.at_most
     ends = _ends(plain, place, value, reader, sizes)
@@ -87,7 +86,7 @@ def slider(
     if not low < high:
         return {}
     is_log = low > 0.0 and least > 0.0 and high / low >= 10.0
-    return {"low": low, "high": high, "step": (high - low) / _STEPS, "is_log": is_log}
+    return {"low": low, "high": high, "is_log": is_log}
 
 
 def _ends(

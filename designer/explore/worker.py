@@ -16,11 +16,11 @@ from typing import Any, get_args
 from designer.explore.here import here
 from designer.explore.map import map_answer, worst_answer
 from designer.explore.measurements import residuals
-from designer.explore.question import Question
-from designer.explore.requests import (
+from designer.explore.question import (
     Kind,
     Long,
     Message,
+    Question,
     Quick,
     Request,
     ThrottledReporter,

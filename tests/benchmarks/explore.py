@@ -26,8 +26,7 @@ from typing import Any
 
 from designer.analysis.analyse import analyse
 from designer.explore.map import MapAnswer
-from designer.explore.question import Rope
-from designer.explore.requests import Message
+from designer.explore.question import Message, Rope
 from designer.explore.session import Session
 from designer.explore.worker import Worker
 from designer.plugins.find import find_plugins
@@ -90,7 +89,7 @@ def _median_s(action: Callable[[], object]) -> float:
 
 
 def _measure(name: str, ask: Asker, with_report: bool) -> None:
-    session = Session.example(name, find_plugins(with_plugins=False))
+    session = Session.open(example_file(name), find_plugins(with_plugins=False))
     session.choose(_ROPE)
     mass = next(one for one in session.fields() if one.path == "robot.platform.mass")
     assert mass.value_SI is not None

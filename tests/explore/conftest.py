@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from designer.explore.question import Question
-from designer.explore.requests import Message
+from designer.explore.question import Message, Question
 from designer.explore.session import Session
 from designer.explore.worker import Worker
 from designer.plugins.find import Plugins, find_plugins
+from designer.resources import example_file
 
 LONGEST_WAIT_S = 120.0
 Open = Callable[[str], Session]
@@ -27,7 +27,7 @@ def no_plugins() -> Plugins:
 @pytest.fixture
 def example(no_plugins: Plugins) -> Open:
     """Opens a shipped study."""
-    return lambda name: Session.example(name, no_plugins)
+    return lambda name: Session.open(example_file(name), no_plugins)
 
 
 @pytest.fixture

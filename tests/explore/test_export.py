@@ -65,7 +65,7 @@ def test_the_map_for_paraview(question: Question, tmp_path: Path) -> None:
     i, j = 7, 11
     at = mesh.find_closest_point(chart.grids["wall"][i, j])
     assert np.allclose(mesh.points[at], chart.grids["wall"][i, j])
-    value = chart.values["wall"]["diameter"][i, j]
+    value = chart.on("wall", "diameter")[i, j]
     assert mesh.point_data["diameter_m"][at] == pytest.approx(value)
     assert [one.name for one in tmp_path.iterdir()] == ["map.vtu"]
 

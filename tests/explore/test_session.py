@@ -333,7 +333,7 @@ def test_what_is_no_text_does_not_open(tmp_path: Path, no_plugins: Plugins) -> N
 
 
 def test_turns_add_up_about_axes_of_the_frame_in_one_step(no_plugins: Plugins) -> None:
-    session = Session.example("cogiro", no_plugins)
+    session = Session.open(example_file("cogiro"), no_plugins)
     start = session.state.place
     session.turn(np.array([0.0, 0.0, 0.1]))
     session.turn(np.array([0.2, 0.0, 0.0]))

@@ -19,13 +19,13 @@ from designer.explore import helper as helper_module
 from designer.explore import worker as worker_module
 from designer.explore.helper import Helper
 from designer.explore.here import Here
-from designer.explore.question import Question, Rope
-from designer.explore.requests import Request, failure_text
+from designer.explore.question import Question, Request, Rope, failure_text
 from designer.explore.ropes import Ropes, full_ropes
 from designer.explore.session import Session
 from designer.model.robot import Poses
 from designer.plugins.find import Plugins, find_plugins
 from designer.progress import checkpoint, interrupted_by
+from designer.resources import example_file
 from designer.statics.inverse import solve_sagging
 
 
@@ -197,7 +197,7 @@ def test_an_effect_of_a_plugin_that_fails_is_told(asker: Any, tmp_path: Path, si
     (dist / "entry_points.txt").write_text("[designer.plugins]\nfrail = frail\n", "utf-8")
     plugins = find_plugins()
     study = tmp_path / "study.yaml"
-    yard = Session.example("yard", plugins)
+    yard = Session.open(example_file("yard"), plugins)
     study.write_text(yard.text + "effects: {frail: {amount: 1}}\n", encoding="utf-8")
     session = Session.open(study, plugins)
     assert session.faults == ()
@@ -263,7 +263,7 @@ def test_what_a_plugin_fails_at_is_told(asker: Any, site: Path, tmp_path: Path) 
     dist.mkdir()
     (dist / "METADATA").write_text("Metadata-Version: 2.1\nName: broken\nVersion: 1.0\n", "utf-8")
     (dist / "entry_points.txt").write_text("[designer.plugins]\nbroken = broken\n", "utf-8")
-    session = Session.example("yard", find_plugins())
+    session = Session.open(example_file("yard"), find_plugins())
     assert any("broken" in line and "no licence" in line for line in session.problems)
     session.edit("workspace.samples", "50")
     end = asker.end_of(asker.ask("ropes", session.question()))
@@ -279,7 +279,8 @@ def test_the_full_selection_in_a_process(asker: Any, yard: Session) -> None:
     ropes, own = end.answer, full_ropes(question_of(yard))
     assert isinstance(ropes, Ropes)
     assert own is not None
-    assert (ropes.best, ropes.csv) == (own.best, own.csv)
+    assert ropes.best == own.best
+    assert [row.reason for row in ropes.rows] == [row.reason for row in own.rows]
     tasks = {one.text for one in asker.seen if not one.is_end}
     assert tasks
     yard.choose(Rope("none", "such"))  # the process stays for the next

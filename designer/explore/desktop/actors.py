@@ -45,6 +45,7 @@ class Piece:
         self.mapper.SetRelativeCoincidentTopologyPointOffsetParameter(-4.0 * before)
         self.actor: Any = pyvista.Actor(mapper=self.mapper, name=name)
         self.actor.prop.lighting = False
+        self._cells = np.empty(0, dtype=np.int64)
         plotter.add_actor(self.actor, name=name, reset_camera=False, render=False)
 
     @property
@@ -60,20 +61,20 @@ class Piece:
         """Draw all of it in one colour."""
         self.actor.prop.color = colour
 
-    def _put(self, points_m: FloatArray, cells: Any, kind: str) -> None:
-        """Write points, and cells only where their number has changed."""
+    def _put(self, points_m: FloatArray, kind: str, cells: Iterable[NDArray[np.int64]]) -> None:
+        """Write points, and cells, each the numbers of its points, only where they are others."""
+        import pyvista
+
         mesh, points = self.mesh, np.ascontiguousarray(points_m, dtype=np.float64)
-        if mesh.n_points == len(points) and len(points) > 0 and cells is None:
+        counted = np.concatenate([np.empty(0, dtype=np.int64), *([len(c), *c] for c in cells)])
+        if 0 < len(points) == mesh.n_points and np.array_equal(counted, self._cells):
             mesh.points[:] = points
             mesh.GetPoints().Modified()
             mesh.Modified()
-            return
-        import pyvista
-
-        if len(points) == 0:
-            mesh.copy_from(pyvista.PolyData())
-            return
-        mesh.copy_from(pyvista.PolyData(points, **{kind: cells} if cells is not None else {}))
+        else:
+            shown: dict[str, Any] = {kind: counted} if len(points) else {}
+            mesh.copy_from(pyvista.PolyData(points if len(points) else None, **shown))
+            self._cells = counted
 
 
 class Lines(Piece):
@@ -85,22 +86,13 @@ class Lines(Piece):
         super().__init__(plotter, name, before)
         self.actor.prop.line_width = width * plotter.devicePixelRatioF()
         self.actor.prop.opacity = opacity
-        self._sizes: tuple[int, ...] = ()
 
     def put(self, lines_m: Iterable[FloatArray]) -> None:
         """Show polylines, each (n, 3) [m]."""
         lines = [np.asarray(line, dtype=np.float64) for line in lines_m if len(line) > 1]
-        sizes = tuple(len(line) for line in lines)
-        points = np.concatenate(lines) if lines else np.empty((0, 3))
-        if sizes == self._sizes:
-            self._put(points, None, "lines")
-            return
-        self._sizes = sizes
-        ends = np.cumsum(sizes)
-        cells = np.concatenate(
-            [[n, *range(end - n, end)] for n, end in zip(sizes, ends, strict=True)] or [[]]
-        )
-        self._put(points, cells.astype(np.int64), "lines")
+        points = np.concatenate([np.empty((0, 3)), *lines])
+        cells = np.split(np.arange(len(points)), np.cumsum([len(line) for line in lines])[:-1])
+        self._put(points, "lines", cells)
 
 
 class Dots(Piece):
@@ -113,10 +105,8 @@ class Dots(Piece):
 
     def put(self, points_m: FloatArray) -> None:
         """Show points (n, 3) [m]."""
-        points = np.asarray(points_m, dtype=np.float64).reshape(-1, 3)
-        has_same_count = len(points) == self.mesh.n_points
-        cells = np.column_stack([np.ones(len(points)), np.arange(len(points))]).astype(np.int64)
-        self._put(points, None if has_same_count else cells.ravel(), "verts")
+        points = points_m.reshape(-1, 3)
+        self._put(points, "verts", np.arange(len(points))[:, None])
 
     def paint(self, colours: NDArray[np.uint8]) -> None:
         """Give each point a colour of its own (n, 3)."""
@@ -132,9 +122,7 @@ class Body(Piece):
 
     def put(self, points_m: FloatArray, faces: Faces) -> None:
         """Show faces (n_faces, 3 or 4) over points (n, 3) [m]."""
-        sides = np.full((len(faces), 1), faces.shape[1] if len(faces) else 3)
-        cells = np.hstack([sides, faces]).ravel() if len(faces) else None
-        self._put(points_m if len(faces) else np.empty((0, 3)), cells, "faces")
+        self._put(points_m if len(faces) else np.empty((0, 3)), "faces", faces)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

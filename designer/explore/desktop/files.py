@@ -20,7 +20,7 @@ from designer.explore.plans import OptimisedStudy
 from designer.explore.session import Session
 from designer.plugins.find import Plugins
 from designer.report import format as fmt
-from designer.resources import example_file, example_names
+from designer.resources import example_file
 
 _STUDIES = "Studies (*.yaml *.yml);;All files (*)"
 _ROBOTS = "Robots of CASPR and WireX (*.xml *.wcrfx);;All files (*)"
@@ -103,18 +103,13 @@ class Files(QObject):
         opened: list[Session] = []
         if not self.may_leave():
             return
-        if not self._succeeds(lambda: opened.append(self._session(path)), _TITLE):
+        if not self._succeeds(lambda: opened.append(Session.open(path, self._plugins)), _TITLE):
             self.not_opened.emit()
             return
         if opened[0].file is not None:
             self._settings.remember(path)
         self._disk = "same"
         self._live.open(opened[0])
-
-    def _session(self, path: Path) -> Session:
-        if path.stem in example_names() and path == example_file(path.stem):
-            return Session.example(path.stem, self._plugins)
-        return Session.open(path, self._plugins)
 
     def close(self) -> None:
         """Go back to the start page."""

@@ -18,8 +18,7 @@ from designer.arrays import FloatArray
 from designer.errors import Fault
 from designer.explore.compare import Differences, Pin, compare
 from designer.explore.desktop.ages import Ages
-from designer.explore.question import Question, Rope, RopePerCable
-from designer.explore.requests import Kind, Long, Message
+from designer.explore.question import Kind, Long, Message, Question, Rope, RopePerCable
 from designer.explore.session import Session
 from designer.explore.worker import Worker
 from designer.study import Study
@@ -200,7 +199,7 @@ class LiveSession(QObject):
     def drop_rejected(self, path: str) -> None:
         """Forget an entry that was refused."""
         if self.session is not None:
-            self.session.drop_rejected(path)
+            self.session.rejected.pop(path, None)
             self.changed.emit()
 
     def choose(self, rope: Rope | RopePerCable | None) -> None:
@@ -287,7 +286,7 @@ class LiveSession(QObject):
         self.quantity = quantity
         self.quantity_changed.emit(quantity)
         chart = self.answers.get("map")
-        if chart is not None and any(quantity not in values for values in chart.values.values()):
+        if chart is not None and chart.grids and quantity not in chart.values:
             self._ask_map("fine")
 
     def move_slice(self, share: float, moving: bool) -> None:

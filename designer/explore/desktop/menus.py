@@ -1,4 +1,4 @@
-"""The menu bar: every action with its name, its keys and what it does, and what is possible now."""
+"""The menu bar: every action with its name, its keys and what it does; what is possible; help."""
 
 from __future__ import annotations
 
@@ -8,10 +8,18 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence
-from PySide6.QtWidgets import QMenu
+from PySide6.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QMenu,
+    QMessageBox,
+    QTextBrowser,
+    QVBoxLayout,
+    QWidget,
+)
 
+from designer import __version__
 from designer.explore.desktop import theme as themes
-from designer.explore.desktop.help import Help, show_about
 from designer.explore.export import What
 from designer.explore.quantities import QUANTITIES
 from designer.explore.session import Session
@@ -34,6 +42,23 @@ _EXPORTS: tuple[tuple[str, What, str, str, str], ...] = (
     ("map", "vtk", "&Map for ParaView …", "Ctrl+Shift+M", "The map as a VTK grid"),
 )
 _THEMES = {"system": "As the system", "light": "Light", "dark": "Dark"}
+HINT = (
+    "Drag the ring to move the platform, its arrow to lift it; click the map to go there; "
+    "F1 for all keys"
+)
+KEYS = (
+    ("Drag the ring around the platform", "moves it in its level (a planar robot in its plane)"),
+    ("Drag the arrow above the ring", "lifts and lowers it"),
+    ("Click on the map", "takes the platform there"),
+    ("Arrow keys", "move it along the axis of the frame that is nearest to that direction"),
+    ("Page Up, Page Down", "lift and lower it"),
+    ("Ctrl + these keys", "turn a platform that can turn, by one degree"),
+    ("Shift + these keys", "ten steps at once"),
+    ("Drag elsewhere", "turns the view; with Shift or the right button shifts it"),
+    ("Wheel", "zooms at the mouse"),
+    ("Home", "looks at everything again"),
+    ("Ctrl + 1 … 7", "choose what the map is coloured by"),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -272,3 +297,31 @@ class Menus:
             action.setEnabled(at_work and (key != "utilisation" or live.rope is not None))
         self.quantities[live.quantity].setChecked(True)
         self.themes[window.settings.theme].setChecked(True)
+
+
+class Help(QDialog):
+    """A page of keys and definitions."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setObjectName("help")
+        self.setWindowTitle("Mouse, keys and quantities")
+        self.resize(620, 560)
+        page = QTextBrowser()
+        rows = "".join(f"<tr><td><b>{k}</b></td><td>{effect}</td></tr>" for k, effect in KEYS)
+        terms = "".join(
+            f"<p><b>{q.title}{f' [{q.unit}]' if q.unit else ''}.</b> {q.definition}</p>"
+            for q in QUANTITIES
+        )
+        page.setHtml(f"<table cellpadding='3'>{rows}</table><hr>{terms}")
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        buttons.rejected.connect(self.reject)
+        column = QVBoxLayout(self)
+        column.addWidget(page)
+        column.addWidget(buttons)
+
+
+def show_about(parent: QWidget) -> None:
+    """Say which program and version this is."""
+    text = f"cdpr-designer {__version__}\n\nCables of large cable-driven parallel robots."
+    QMessageBox.about(parent, "About cdpr-designer", text)

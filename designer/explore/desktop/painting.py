@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from designer.arrays import BoolArray, FloatArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.explore.desktop import theme
 from designer.explore.quantities import category_labels
 from designer.explore.question import cables_words
@@ -46,6 +45,10 @@ class Values:
     is_unserved: BoolArray
     is_left_out: BoolArray
 
+    def at(self, points: IntArray) -> Values:
+        """Return those of some points alone."""
+        return Values(self.scaled[points], self.is_unserved[points], self.is_left_out[points])
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Painting:
@@ -67,14 +70,14 @@ class Painting:
         plain = cls(quantity, None)
         if quantity.is_category:
             return plain
-        values = plain.of(answer, tuple(answer.grids))
+        values = plain.of(answer)
         counts = ~(values.is_unserved | values.is_left_out)
         return cls(quantity, fixed if fixed is not None else steps_for(values.scaled[counts]))
 
     @classmethod
     def _of_difference(cls, answer: MapAnswer, quantity: Quantity) -> Painting:
         plain = cls(quantity, None, is_difference=True)
-        values = plain.of(answer, tuple(answer.grids)).scaled
+        values = plain.of(answer).scaled
         steps = steps_for(np.abs(values))
         if steps is None or not np.nanmax(np.abs(values)) > 0.0:
             return cls(quantity, Steps(np.array([-1.0, 0.0, 1.0]), "neither", DIFFERENCES), True)
@@ -130,27 +133,19 @@ class Painting:
             colours = ListedColormap(np.repeat(shares[:, None], 3, axis=1))
         return pyvista.LookupTable(colours, n_values=colours.N)
 
-    def of(self, answer: MapAnswer, grids: Sequence[str]) -> Values:
-        """Return what an answer has at the points of some grids, one after the other."""
-
-        def column(key: str) -> FloatArray:
-            parts = [np.asarray(answer.values[grid][key], dtype=float).ravel() for grid in grids]
-            return np.concatenate(parts or [np.empty(0)])
-
-        if self.is_difference:
-            parts = [answer.difference(grid, self.quantity.key) for grid in grids]
-            flat = [part.ravel() for part in parts if part is not None]
-            scaled = np.concatenate(flat or [np.empty(0)])
-        else:
-            scaled = column(self.quantity.key)
+    def of(self, answer: MapAnswer) -> Values:
+        """Return what an answer has at its points."""
+        values = answer.values
+        change = answer.difference(self.quantity.key) if self.is_difference else None
+        scaled = values[self.quantity.key] if change is None else change
         if self.is_category:
             scaled = np.where(np.isfinite(scaled), np.mod(scaled, len(CATEGORIES)), np.nan)
         else:
             scaled = scaled * self.quantity.scale
-        left_out = column("left_out") > 0.5
-        unserved = (column("verdict") != Verdict.SOLVED) & ~left_out
-        if all("unserved" in answer.values[grid] for grid in grids):
-            unserved |= column("unserved") > 0.5
+        left_out = values["left_out"] > 0.5
+        unserved = (values["verdict"] != Verdict.SOLVED) & ~left_out
+        if "unserved" in values:
+            unserved |= values["unserved"] > 0.5
         return Values(scaled, unserved, left_out)
 
     def colours(self, values: Values) -> NDArray[np.uint8]:
@@ -166,7 +161,7 @@ class Painting:
 
     def keys(self, answer: MapAnswer) -> list[Key]:
         """Return what beside the scale has to be explained, where it occurs."""
-        values = self.of(answer, tuple(answer.grids))
+        values = self.of(answer)
         keys: list[Key] = []
         if self.is_category:
             labels = category_labels(self.quantity.key, len(CATEGORIES))

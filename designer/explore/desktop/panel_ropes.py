@@ -47,31 +47,31 @@ def _rank(row: RopeRow) -> float:
     """What became of it, then its mass; of what does not hold, how far it is from that."""
     known = row.standing in _STANDINGS
     standing = _STANDINGS.index(row.standing) if known else len(_STANDINGS)
-    then = row.total_mass_kg if row.holds else row.utilisation
+    then = row.figures.mass_kg if row.holds else row.verification.utilisation
     return 1e9 * standing + (5e8 if math.isnan(then) else min(then, 1e8))
 
 
 COLUMNS = (
-    Column("rope", attrgetter("rope.size_id"), "Size of the grade.", attrgetter("diameter_m")),
-    Column("grade", attrgetter("rope.grade_id"), "Grade of the catalogue."),
-    Column("maker", attrgetter("maker"), "Who sells it, or its standard."),
-    Column("material", attrgetter("material"), "What it is made of."),
-    _scaled("d [mm]", "diameter_m", 1e3, 3, "Nominal diameter."),
+    Column("rope", attrgetter("size.id"), "Size of the grade.", attrgetter("size.diameter_m")),
+    Column("grade", attrgetter("grade.id"), "Grade of the catalogue."),
+    Column("maker", attrgetter("grade.manufacturer"), "Who sells it, or its standard."),
+    Column("material", lambda row: row.grade.material or "", "What it is made of."),
+    _scaled("d [mm]", "size.diameter_m", 1e3, 3, "Nominal diameter."),
     number_column(
         "utilisation",
-        "utilisation",
+        "verification.utilisation",
         "Largest tension at any pose of the workspace over the allowable tension; over 100 % it is "
         "too weak.",
         fmt.utilisation,
-        share=attrgetter("utilisation"),
+        share=attrgetter("verification.utilisation"),
     ),
-    _scaled("mass [kg]", "total_mass_kg", 1.0, 4, "All cables at the longest length each needs."),
-    _scaled("kg/m", "linear_mass_kg_per_m", 1.0, 3, "Mass per length."),
-    _scaled("MBL [kN]", "breaking_load_N", 1e-3, 4, "Minimum breaking load."),
-    _scaled("largest T [kN]", "max_tension_N", 1e-3, 4, "Largest tension anywhere in any cable."),
-    _scaled("drum [mm]", "drum_diameter_m", 1e3, 4, "Least diameter of drums and sheaves."),
-    _scaled("stiffness [kN/m]", "stiffness_N_per_m", 1e-3, 3, "Least stiffness of the platform."),
-    _scaled("cost", "cost", 1.0, 4, "Of all cables, where the grade has a price."),
+    _scaled("mass [kg]", "figures.mass_kg", 1.0, 4, "All cables at the longest length each needs."),
+    _scaled("kg/m", "size.linear_density_kg_per_m", 1.0, 3, "Mass per length."),
+    _scaled("MBL [kN]", "size.minimum_breaking_load_N", 1e-3, 4, "Minimum breaking load."),
+    _scaled("largest T [kN]", "verification.max_tension_N", 1e-3, 4, "Largest in any cable."),
+    _scaled("drum [mm]", "figures.drum_diameter_m", 1e3, 4, "Least diameter of drums and sheaves."),
+    _scaled("stiffness [kN/m]", "figures.stiffness_N_per_m", 1e-3, 3, "Least, of the platform."),
+    _scaled("cost", "figures.cost", 1.0, 4, "Of all cables, where the grade has a price."),
     Column(
         "what became of it",
         attrgetter("reason"),
@@ -174,8 +174,8 @@ class PanelRopes(QWidget):
         only_holding = self.only_holding.isChecked()
         self.table.narrow(
             lambda row: (
-                (materials[0] == materials[1] or row.material == materials[1])
-                and (makers[0] == makers[1] or row.maker == makers[1])
+                (materials[0] == materials[1] or row.grade.material == materials[1])
+                and (makers[0] == makers[1] or row.grade.manufacturer == makers[1])
                 and (row.holds or not only_holding)
             )
         )

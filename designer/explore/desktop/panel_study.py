@@ -35,7 +35,7 @@ from designer.report import format as fmt
 if TYPE_CHECKING:
     from designer.errors import Fault
     from designer.explore.fields import Field
-    from designer.explore.history import Rejected
+    from designer.explore.reading import Rejected
 
 _STEPS = 1000
 """Finer than a pixel of the slider."""

@@ -52,7 +52,6 @@ class SceneActors:
         self.edges = Lines(plotter, "platform edges", 1.6, before=4.0)
         self.mass = Dots(plotter, "load", 12.0, before=5.0)
         self.rows = Dots(plotter, "measured rows", 7.0, before=6.0)
-        self.names: tuple[str, ...] = ()
         self.is_planar = False
         self.plane_normal = np.array([0.0, 1.0, 0.0])
         self.bounds_m = np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
@@ -127,18 +126,17 @@ class SceneActors:
     def put_map(self, answer: MapAnswer | None, painting: Painting | None) -> None:
         """Colour the map; None takes it away."""
         grids = {} if answer is None else answer.grids
-        self.names = tuple(grids)
         shell = [name for name in grids if name not in ("slice", "points")]
         level = [name for name in grids if name == "slice"]
         for surface, names in ((self.shell, shell), (self.slice, level)):
             surface.put_grids({name: grids[name] for name in names})
             if answer is not None and painting is not None:
-                surface.paint(painting, painting.of(answer, names))
+                surface.paint(painting, painting.of(answer).at(answer.points_of(names)))
         self.rim.put([grids[name][-1] for name in level])
         self._points_m = grids["points"].reshape(-1, 3) if "points" in grids else np.empty((0, 3))
         self.dots.put(self._points_m)
         if len(self._points_m) and answer is not None and painting is not None:
-            self.dots.paint(painting.colours(painting.of(answer, ["points"])))
+            self.dots.paint(painting.colours(painting.of(answer)))
 
     def put_rows(self, position_m: FloatArray, sizes: FloatArray, brightest: float) -> None:
         """Show measured rows (n,), coloured by how much is left of them, up to ``brightest``."""

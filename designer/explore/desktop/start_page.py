@@ -26,11 +26,6 @@ _COLUMNS = 4
 """With these pictures and the recent studies as wide as the window at first."""
 
 
-def picture_file(example: str) -> Path:
-    """Return the path of the picture of a shipped study."""
-    return example_file(example).parent / "pictures" / f"{example}.png"
-
-
 class StartPage(QScrollArea):
     """Where a study is chosen."""
 
@@ -85,9 +80,10 @@ class StartPage(QScrollArea):
         grid = QGridLayout()
         grid.setSpacing(12)
         for number, name in enumerate(example_names()):
-            entry = _StudyButton(name, example_summary(name), picture_file(name))
-            entry = named(entry, f"example {name}")
-            entry.clicked.connect(lambda _=False, name=name: self.chosen.emit(example_file(name)))
+            file = example_file(name)
+            picture = file.parent / "pictures" / f"{name}.png"
+            entry = named(_StudyButton(name, example_summary(name), picture), f"example {name}")
+            entry.clicked.connect(lambda _=False, file=file: self.chosen.emit(file))
             grid.addWidget(entry, number // _COLUMNS, number % _COLUMNS)
         column.addLayout(grid)
         column.addStretch(1)

@@ -254,7 +254,7 @@ class WorkPage(QWidget):
         if answer is None or not answer.grids:
             return
         quantity = BY_KEY[str(self.quantity.currentData())]
-        if any(quantity.key not in values for values in answer.values.values()):
+        if quantity.key not in answer.values:
             return  # it was asked for, and comes with the next answer
         if quantity.key == "utilisation" and answer.rope is None:
             return  # of the thinnest cable it is 100 % everywhere; that of the rope comes
@@ -334,8 +334,9 @@ class WorkPage(QWidget):
         """Return what the map says at the grid point next to a place, and where that is."""
         if self.map is None or self.painting is None or hit.grid not in self.map.grids:
             return ""
-        values = {key: v.ravel()[hit.number] for key, v in self.map.values[hit.grid].items()}
-        position = fmt.position(self.map.grids[hit.grid].reshape(-1, 3)[hit.number])
+        number = self.map.points_of([hit.grid])[hit.number]
+        values = {key: column[number] for key, column in self.map.values.items()}
+        position = fmt.position(self.map.positions_m[number])
         quantity = self.painting.quantity
         value = float(values[quantity.key])
         if values["left_out"]:
@@ -347,9 +348,9 @@ class WorkPage(QWidget):
         else:
             text = f"{fmt.number(value * quantity.scale, 4)} {quantity.unit}".strip()
         lines = [f"{quantity.title}: {text}", position]
-        change = self.map.difference(hit.grid, quantity.key)
+        change = self.map.difference(quantity.key)
         if change is not None and not quantity.is_category:
-            less = fmt.number(float(change.ravel()[hit.number]) * quantity.scale, 3)
+            less = fmt.number(float(change[number]) * quantity.scale, 3)
             lines.insert(1, f"now less A: {less} {quantity.unit}".strip())
         verdict = Verdict(int(values["verdict"]))
         if verdict is not Verdict.SOLVED:

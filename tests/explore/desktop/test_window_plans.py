@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QLabel, QMenu, QTableView
 from window_driver import LEFT, Driver
 
-from designer.explore.requests import Long
+from designer.explore.question import Long
 from designer.sweep.store import read_store
 
 OPTIMISATION = """study: yard.yaml

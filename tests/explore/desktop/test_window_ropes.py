@@ -29,14 +29,14 @@ def test_the_best_stands_first_bold_and_colours_the_map(yard: Driver) -> None:
 
 def test_a_click_on_a_row_colours_the_map_by_it(yard: Driver) -> None:
     table = yard.find(QTableView, "candidates")
-    before = yard.window.work.map.values["slice"]["utilisation"].copy()
+    before = yard.window.work.map.on("slice", "utilisation").copy()
     QTest.mouseClick(
         table.viewport(), Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier,
         table.visualRect(table.model().index(3, 0)).center(),
     )  # fmt: skip
     yard.rest()
     assert yard.session.state.rope.size_id == shown(yard)[3]
-    after = yard.window.work.map.values["slice"]["utilisation"]
+    after = yard.window.work.map.on("slice", "utilisation")
     assert abs(after - before).max() > 0.001
 
 

@@ -105,7 +105,7 @@ def test_keys_turn_a_platform(empty: Driver) -> None:
 def test_the_mouse_reads_the_map(yard: Driver) -> None:
     work = yard.window.work
     wanted = slice_point(yard)
-    value = float(work.map.values["slice"]["utilisation"][10, 20])
+    value = float(work.map.on("slice", "utilisation")[10, 20])
     from PySide6.QtTest import QTest
 
     QTest.mouseMove(yard.scene, yard.pixel(wanted))

@@ -126,7 +126,6 @@ def test_a_slider_follows_at_once_and_is_one_step(yard: Driver) -> None:
     yard.rest()
     assert "coarse" in asked
     assert asked.index("coarse") < asked.index("fine")
-    assert yard.window.work.map.is_fine
     yard.keys("Ctrl+Z")
     assert yard.session.study.robot.platform.mass_kg == 180.0
     assert not yard.session.is_modified
