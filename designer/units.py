@@ -6,7 +6,6 @@ only the names of units go to pint.
 
 from __future__ import annotations
 
-import difflib
 import functools
 import math
 import re
@@ -242,12 +241,12 @@ def _unit(text: str) -> Unit:
 def _check_unit(name: str) -> None:
     from pint import PintError
 
+    from designer.spelling import nearest_name
+
     try:
         _registry().parse_units(name)
     except PintError:
-        alike = [unit for unit in _COMMON_UNITS if unit.lower() == name.lower()]
-        alike += difflib.get_close_matches(name, _COMMON_UNITS, n=1)
-        nearest = next(iter(alike), None)
+        nearest = nearest_name(name, _COMMON_UNITS)
         raise _MisreadError(f"has the unknown unit '{name}'", nearest=nearest) from None
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cache
 from typing import Annotated, Any, ClassVar, get_args, get_origin, get_type_hints
@@ -23,6 +22,7 @@ from pydantic_core import CoreSchema, ErrorDetails, core_schema
 
 from designer.documents.document import Document, Key, printable
 from designer.errors import Fault
+from designer.spelling import did_you_mean, nearest_name
 from designer.units import describe
 
 
@@ -218,8 +218,7 @@ def schema_faults(error: ValidationError, document: Document, schema: AnySection
 
 
 def _nearest_field(loc: tuple[Key, ...], schema: AnySection) -> str | None:
-    names = difflib.get_close_matches(str(loc[-1]), known_fields(schema, loc[:-1]), n=1)
-    return names[0] if names else None
+    return nearest_name(str(loc[-1]), known_fields(schema, loc[:-1]))
 
 
 def _document_path(detail: ErrorDetails, document: Document) -> list[Key]:
@@ -245,9 +244,8 @@ def _words(detail: ErrorDetails, schema: AnySection) -> tuple[str, str]:
     if detail["type"] == "missing":
         return "is missing", expected_of(known_fields(schema, loc[:-1])[str(loc[-1])])
     if detail["type"] in _UNKNOWN:
-        nearest = _nearest_field(loc, schema)
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
-        expected = _one_of(known_fields(schema, loc[:-1]), "one of ") + hint
+        names = known_fields(schema, loc[:-1])
+        expected = _one_of(names, "one of ") + did_you_mean(str(loc[-1]), names)
         return f"unknown field '{printable(str(loc[-1]))}'", expected
     needed = _one_of(known_fields(schema, loc), "a mapping with ")
     verdict, expected = {

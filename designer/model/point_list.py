@@ -11,23 +11,14 @@ from scipy.spatial import cKDTree
 
 from designer import checked
 from designer.arrays import BoolArray, FloatArray
-from designer.model.region import (
-    Border,
-    BoxFrame,
-    Plural,
-    Position,
-    Region,
-    Sampling,
-    Sizes,
-    in_chunks,
-)
+from designer.model import region
 
 _MOST_VERTICES = 256
 """Of a long list only the first points are tried as corners: all of it is tried anyway."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PointList(Region):
+class PointList(region.Region):
     """A finite set of positions, each of which is visited.
 
     Parameters
@@ -45,10 +36,10 @@ class PointList(Region):
         return np.array([self.points_m.min(axis=0), self.points_m.max(axis=0)])
 
     @property
-    def sizes(self) -> Sizes:
+    def sizes(self) -> region.Sizes:
         return ()
 
-    def words(self, position: Position, plural: Plural) -> str:
+    def words(self, position: region.Position, plural: region.Plural) -> str:
         return f"a list of {plural(len(self.points_m), 'point')}"
 
     def contains(self, points_m: FloatArray) -> BoolArray:
@@ -57,15 +48,17 @@ class PointList(Region):
     def nearest(self, points_m: FloatArray) -> FloatArray:
         return np.asarray(self.points_m[cKDTree(self.points_m).query(points_m)[1]])
 
-    def samples_m(self, count: int, sampling: Sampling, seed: int) -> Iterator[FloatArray]:
-        return in_chunks(self.points_m)
+    def samples_m(self, count: int, sampling: region.Sampling, seed: int) -> Iterator[FloatArray]:
+        return region.in_chunks(self.points_m)
 
     def inside_m(self, rng: np.random.Generator, count: int) -> FloatArray:
         return self.points_m[rng.integers(len(self.points_m), size=count)]
 
-    def border(self) -> Border:
-        return Border(self.points_m[:_MOST_VERTICES], np.empty((0, 2, 3)), [])
+    def border(self) -> region.Border:
+        return region.Border(self.points_m[:_MOST_VERTICES], np.empty((0, 2, 3)), [])
 
-    def frame(self) -> BoxFrame:
+    def frame(self) -> region.BoxFrame:
         """Return each point as a box without size."""
-        return BoxFrame(np.zeros(3), np.eye(3), self.points_m, self.points_m, np.zeros((0, 3)))
+        return region.BoxFrame(
+            np.zeros(3), np.eye(3), self.points_m, self.points_m, np.zeros((0, 3))
+        )

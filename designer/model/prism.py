@@ -11,25 +11,7 @@ from numpy.typing import ArrayLike
 
 from designer import checked
 from designer.arrays import BoolArray, FloatArray, frozen_array
-from designer.model import polygon
-from designer.model.region import (
-    CHUNK,
-    ON_A_SIDE,
-    Border,
-    BoxFrame,
-    Plural,
-    Position,
-    Region,
-    Sampling,
-    Sizes,
-    box_around,
-    even_axes,
-    grid_of,
-    in_chunks,
-    in_plan,
-    require_ascending,
-    ring,
-)
+from designer.model import polygon, region
 from designer.model.rings import (
     OPENING_RAD,
     RINGS,
@@ -49,7 +31,7 @@ _BEYOND = 1e-12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Prism(Region):
+class Prism(region.Region):
     """An upright prism over a convex polygon.
 
     Parameters
@@ -67,7 +49,7 @@ class Prism(Region):
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
-        require_ascending(self.z_m)
+        region.require_ascending(self.z_m)
         edge = polygon.edges_m(self.polygon_m)
         after = np.roll(edge, -1, axis=0)
         turn = edge[:, 0] * after[:, 1] - edge[:, 1] * after[:, 0]
@@ -84,7 +66,7 @@ class Prism(Region):
         ValueError
             If the points lie on one line, or nothing is left inside the inset.
         """
-        points = in_plan(points_m, inset_m)
+        points = region.in_plan(points_m, inset_m)
         return cls(polygon.inset_hull_m(points, inset_m), z_m)
 
     @classmethod
@@ -92,14 +74,14 @@ class Prism(Region):
         cls, x_m: tuple[float, float], y_m: tuple[float, float], z_m: tuple[float, float]
     ) -> Prism:
         """Return an axis-parallel box."""
-        require_ascending(x_m, "x")
-        require_ascending(y_m, "y")
+        region.require_ascending(x_m, "x")
+        region.require_ascending(y_m, "y")
         corners = [(x_m[0], y_m[0]), (x_m[1], y_m[0]), (x_m[1], y_m[1]), (x_m[0], y_m[1])]
         return cls(frozen_array(corners), z_m)
 
     @property
     def bounds_m(self) -> FloatArray:
-        return box_around(self.polygon_m, self.z_m)
+        return region.box_around(self.polygon_m, self.z_m)
 
     @property
     def area_m2(self) -> float:
@@ -107,11 +89,11 @@ class Prism(Region):
         return polygon.area_m2(self.polygon_m)
 
     @property
-    def sizes(self) -> Sizes:
+    def sizes(self) -> region.Sizes:
         volume = self.area_m2 * (self.z_m[1] - self.z_m[0])
         return ("Base area", self.area_m2, "m²"), ("Volume", volume, "m³")
 
-    def words(self, position: Position, plural: Plural) -> str:
+    def words(self, position: region.Position, plural: region.Plural) -> str:
         return f"upright prism over {len(self.polygon_m)} corners"
 
     def contains(self, points_m: FloatArray) -> BoolArray:
@@ -128,16 +110,16 @@ class Prism(Region):
         clipped[outside, :2] = polygon.nearest_on_edges_m(self.polygon_m, plan)
         return clipped
 
-    def samples_m(self, count: int, sampling: Sampling, seed: int) -> Iterator[FloatArray]:
+    def samples_m(self, count: int, sampling: region.Sampling, seed: int) -> Iterator[FloatArray]:
         # Those of an even sample of the box around it that lie inside.
         low, high = self.bounds_m
         if sampling == "grid":
             spacing = np.cbrt((self.volume_m3 or 0.0) / count)
-            x, y, z = even_axes(low, high, (high - low) / spacing)
-            for layer in (grid_of(x, y, [height]) for height in z):
-                yield from in_chunks(layer[self.contains(layer)])
+            x, y, z = region.even_axes(low, high, (high - low) / spacing)
+            for layer in (region.grid_of(x, y, [height]) for height in z):
+                yield from region.in_chunks(layer[self.contains(layer)])
             return
-        sequence = sobol(3, seed, CHUNK)
+        sequence = sobol(3, seed, region.CHUNK)
         while count > 0:
             points = low + next(sequence) * (high - low)
             inside = points[self.contains(points)][:count]
@@ -149,7 +131,7 @@ class Prism(Region):
         plan = polygon.within_m(self.polygon_m, rng.random((count, 3)))
         return np.column_stack([plan, rng.uniform(*self.z_m, count)])
 
-    def border(self) -> Border:
+    def border(self) -> region.Border:
         low, high = (
             np.column_stack([self.polygon_m, np.full(len(self.polygon_m), z)]) for z in self.z_m
         )
@@ -158,8 +140,8 @@ class Prism(Region):
             np.array([a, b, d, c])
             for (a, c), (b, d) in zip(upright, np.roll(upright, -1, axis=0), strict=True)
         ]
-        edges = np.concatenate([ring(low), ring(high), upright])
-        return Border(np.concatenate([low, high]), edges, [low, high, *sides])
+        edges = np.concatenate([region.ring(low), region.ring(high), upright])
+        return region.Border(np.concatenate([low, high]), edges, [low, high, *sides])
 
     @property
     def centre_m(self) -> FloatArray:
@@ -178,7 +160,7 @@ class Prism(Region):
         normals = np.column_stack([edges[:, 1], -edges[:, 0]])
         normals /= np.linalg.norm(edges, axis=1)[:, None]
         gaps = np.einsum("ek,ek->e", normals, self.polygon_m - position_m[:2])
-        sides = normals[gaps <= ON_A_SIDE * float(np.ptp(self.polygon_m, axis=0).max())]
+        sides = normals[gaps <= region.ON_A_SIDE * float(np.ptp(self.polygon_m, axis=0).max())]
         if len(sides) == 0:
             return np.zeros(3)
         direction, *_ = np.linalg.lstsq(sides, np.ones(len(sides)), rcond=None)
@@ -188,7 +170,7 @@ class Prism(Region):
         return Prism.over(self.polygon_m, -margin_m, self.z_m)
 
     def outline_m(self, plane: list[int]) -> FloatArray:
-        return self.polygon_m if plane == [0, 1] else Region.outline_m(self, plane)
+        return self.polygon_m if plane == [0, 1] else region.Region.outline_m(self, plane)
 
     def section_m(self, share: float = 1.0, rings: int = RINGS, spokes: int = SPOKES) -> FloatArray:
         outline = outline_m(self.polygon_m, spokes)
@@ -224,7 +206,7 @@ class Prism(Region):
     def opening_azimuth_rad(self, toward_m: FloatArray) -> float:
         return float(azimuth_rad(toward_m[:2] - self.centre_m) + 0.5 * OPENING_RAD)
 
-    def frame(self) -> BoxFrame:
+    def frame(self) -> region.BoxFrame:
         low, high = self.bounds_m
         corners, edges = self.polygon_m, polygon.edges_m(self.polygon_m)
         lengths = np.hypot(*edges.T)
@@ -232,4 +214,4 @@ class Prism(Region):
         outward = np.column_stack([edges[:, 1], -edges[:, 0]]) / lengths[lengths > 0.0, None]
         beyond = _BEYOND * np.abs(self.bounds_m).max()
         sides = np.column_stack([outward, -np.einsum("ij,ij->i", outward, corners) - beyond])
-        return BoxFrame(np.zeros(3), np.eye(3), low[None], high[None], sides)
+        return region.BoxFrame(np.zeros(3), np.eye(3), low[None], high[None], sides)

@@ -11,24 +11,7 @@ from numpy.typing import ArrayLike
 
 from designer import checked
 from designer.arrays import BoolArray, FloatArray, frozen_array
-from designer.model.region import (
-    CHUNK,
-    ON_A_SIDE,
-    Border,
-    BoxFrame,
-    Plural,
-    Position,
-    Region,
-    Sampling,
-    Sizes,
-    box_around,
-    even_axes,
-    grid_of,
-    in_chunks,
-    in_plan,
-    require_ascending,
-    ring,
-)
+from designer.model import region
 from designer.model.rings import RINGS, SPOKES, outline_m, rings_m
 from designer.model.sobol import sobol
 
@@ -38,7 +21,7 @@ _UNIT_SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Rectangle(Region):
+class Rectangle(region.Region):
     """An upright rectangle.
 
     Parameters
@@ -57,7 +40,7 @@ class Rectangle(Region):
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
-        require_ascending(self.z_m)
+        region.require_ascending(self.z_m)
         if not np.ptp(self.ends_m, axis=0).any():
             raise ValueError("the two ends of the rectangle are the same point")
 
@@ -70,7 +53,7 @@ class Rectangle(Region):
         ValueError
             If the points are one point or not on a line, or nothing is left inside the inset.
         """
-        points = in_plan(points_m, inset_m)
+        points = region.in_plan(points_m, inset_m)
         middle = points.mean(axis=0)
         _, spread, axes = np.linalg.svd(points - middle)
         if spread[0] == 0.0 or (len(spread) > 1 and spread[1] > _OFF_LINE * spread[0]):
@@ -83,7 +66,7 @@ class Rectangle(Region):
 
     @property
     def bounds_m(self) -> FloatArray:
-        return box_around(self.ends_m, self.z_m)
+        return region.box_around(self.ends_m, self.z_m)
 
     @property
     def size_m(self) -> FloatArray:
@@ -91,7 +74,7 @@ class Rectangle(Region):
         return np.array([np.linalg.norm(np.ptp(self.ends_m, axis=0)), np.ptp(self.z_m)])
 
     @property
-    def sizes(self) -> Sizes:
+    def sizes(self) -> region.Sizes:
         return (("Area", float(np.prod(self.size_m)), "m²"),)
 
     @property
@@ -101,7 +84,7 @@ class Rectangle(Region):
         edge = -edge if tuple(edge) < (0.0, 0.0) else edge
         return np.asarray(edge / np.linalg.norm(edge))
 
-    def words(self, position: Position, plural: Plural) -> str:
+    def words(self, position: region.Position, plural: region.Plural) -> str:
         return f"upright rectangle from {' to '.join(position(end) for end in self.ends_m)}"
 
     def at(self, share: FloatArray) -> FloatArray:
@@ -124,27 +107,29 @@ class Rectangle(Region):
     def nearest(self, points_m: FloatArray) -> FloatArray:
         return self.at(np.clip(self.shares(points_m), 0.0, 1.0))
 
-    def samples_m(self, count: int, sampling: Sampling, seed: int) -> Iterator[FloatArray]:
+    def samples_m(self, count: int, sampling: region.Sampling, seed: int) -> Iterator[FloatArray]:
         if sampling == "grid":
             spacing = np.sqrt(np.prod(self.size_m) / count)
-            share = grid_of(*even_axes(np.zeros(2), np.ones(2), self.size_m / spacing))
-            yield from in_chunks(self.at(share))
+            share = region.grid_of(
+                *region.even_axes(np.zeros(2), np.ones(2), self.size_m / spacing)
+            )
+            yield from region.in_chunks(self.at(share))
             return
-        sequence = sobol(2, seed, CHUNK)
-        for start in range(0, count, CHUNK):
+        sequence = sobol(2, seed, region.CHUNK)
+        for start in range(0, count, region.CHUNK):
             yield self.at(next(sequence)[: count - start])
 
     def inside_m(self, rng: np.random.Generator, count: int) -> FloatArray:
         return self.at(rng.random((count, 2)))
 
-    def border(self) -> Border:
+    def border(self) -> region.Border:
         corners = self.at(_UNIT_SQUARE)
-        return Border(corners, ring(corners), [corners])
+        return region.Border(corners, region.ring(corners), [corners])
 
     def outward(self, position_m: FloatArray) -> FloatArray:
         share = float(self.shares(position_m)[0])
         direction = np.append((self.ends_m[1] - self.ends_m[0]) / self.size_m[0], 0.0)
-        at_start, at_end = (abs(share - end) <= ON_A_SIDE for end in (0.0, 1.0))
+        at_start, at_end = (abs(share - end) <= region.ON_A_SIDE for end in (0.0, 1.0))
         return np.asarray((at_end * 1.0 - at_start * 1.0) * direction)
 
     def grown(self, margin_m: float) -> Rectangle:
@@ -160,8 +145,8 @@ class Rectangle(Region):
     def cutaway_m(self, toward_m: FloatArray) -> Mapping[str, FloatArray]:
         return {"section": self.section_m()}
 
-    def frame(self) -> BoxFrame:
+    def frame(self) -> region.BoxFrame:
         edge = self.ends_m[1] - self.ends_m[0]
         axes = np.array([[edge[0], 0.0, 0.0], [edge[1], 0.0, 0.0], [0.0, 0.0, 1.0]])
         low, high = np.array([[0.0, 0.0, self.z_m[0]]]), np.array([[1.0, 0.0, self.z_m[1]]])
-        return BoxFrame(np.array([*self.ends_m[0], 0.0]), axes, low, high, np.zeros((0, 3)))
+        return region.BoxFrame(np.array([*self.ends_m[0], 0.0]), axes, low, high, np.zeros((0, 3)))
