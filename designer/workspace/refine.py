@@ -455,7 +455,7 @@ class _PoseSearch:
 
     def _are_marks(self, at: FloatArray) -> BoolArray:
         """Tell which places are landmarks; what is largest there hardly is by chance."""
-        return (at[:, None] == self._marks).all(axis=2).any(axis=1)
+        return np.asarray((at[:, None] == self._marks).all(axis=2).any(axis=1))
 
     def _ask_about(self, climbs: _Climbs, places: FloatArray) -> FloatArray:
         """Return each climb's own demand (n_climbs, …) at places (n_climbs, …, n_coordinates)."""
