@@ -36,6 +36,9 @@ _WORTH_A_SEARCH = 5e-4
 """Relative, in weight or tension: half of that in diameter."""
 _SAME = 1e-7
 """Relative: what two searches may leave between them that end in the same branch."""
+_FEW_TURNS = 5
+"""Of pulleys, before poses that have come to rest are left out; of a search, which costs more than
+all else, only the first: a pose without an answer rests at once."""
 LONG = 1.5
 """Length over chord above which a cable counts as far too long."""
 
@@ -118,7 +121,7 @@ def _solve_over_pulleys(
     *,
     is_thorough: bool,
     rates_branches: bool,
-    turns: int = 5,
+    turns: int = _FEW_TURNS,
 ) -> tuple[Solution, PulleyRun]:
     """Solve with a few turns, and those poses that have not come to rest again with more."""
     from designer.kernel.batch import solve_batch
@@ -160,7 +163,7 @@ def _solve_over_pulleys(
             task.part(at),
             is_thorough=is_thorough,
             rates_branches=rates_branches,
-            turns=2 * turns,
+            turns=max(2 * turns, _FEW_TURNS),
         )
         _replace(solution, run, at, *again)
     return solution, run
@@ -203,7 +206,7 @@ def _try_other_branches(
         return
     poses = flat.part(at)
     again, its_run = _solve_over_pulleys(
-        robot, poses, task.part(at), is_thorough=True, rates_branches=False
+        robot, poses, task.part(at), is_thorough=True, rates_branches=False, turns=1
     )
     solved = again.verdict == Verdict.SOLVED
     if task.inverse_weight_m_per_N is None:
