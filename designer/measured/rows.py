@@ -10,14 +10,7 @@ import numpy as np
 
 from designer.arrays import BoolArray, IntArray
 from designer.errors import Fault
-from designer.measured.assign import (
-    POSITION,
-    TIME_NAME,
-    Assigned,
-    dimension_of,
-    length_names,
-    tension_names,
-)
+from designer.measured import assign
 from designer.measured.table import MOST_ALIKE, LogTable, RawColumn, is_number
 from designer.spelling import in_runs
 from designer.units import ANGLE, FORCE, LENGTH, NUMBER, SPEED, TEMPERATURE, describe
@@ -65,14 +58,14 @@ def is_numeric(column: RawColumn) -> bool:
     return column.n_numbers > 0 and column.n_numbers >= column.n_texts
 
 
-def cell_faults(assigned: Assigned) -> list[Fault]:
+def cell_faults(assigned: assign.Assigned) -> list[Fault]:
     """Return what is wrong in single cells: texts and numbers beyond all bounds."""
     numeric = [("", column) for column in assigned.covariates.values() if is_numeric(column)]
     columns = [*assigned.ours.items(), *numeric]
     faults: list[Fault] = []
     total = 0
     for name, column in columns:
-        dimension = dimension_of(name) or NUMBER  # a covariate has no name of ours
+        dimension = assign.dimension_of(name) or NUMBER  # a covariate has no name of ours
         low, high = _BOUNDS.get(dimension, (-_LARGEST_NUMBER, _LARGEST_NUMBER))
         rows = np.flatnonzero((column.values < low) | (column.values > high))
         total += len(rows)
@@ -87,7 +80,7 @@ def cell_faults(assigned: Assigned) -> list[Fault]:
     return [*_text_faults(assigned, [column for _, column in columns]), *wild]
 
 
-def usable_rows(assigned: Assigned, n_cables: int, *, settled: bool) -> Rows:
+def usable_rows(assigned: assign.Assigned, n_cables: int, *, settled: bool) -> Rows:
     """Return which rows have a pose and a reading.
 
     Parameters
@@ -101,7 +94,7 @@ def usable_rows(assigned: Assigned, n_cables: int, *, settled: bool) -> Rows:
     """
     has_pose, faults = _with_pose(assigned)
     has_reading = np.ones_like(has_pose)
-    if readings := assigned.present(length_names(n_cables) + tension_names(n_cables)):
+    if readings := assigned.present(assign.length_names(n_cables) + assign.tension_names(n_cables)):
         has_reading = ~np.all([np.isnan(column.values) for column in readings], axis=0)
     is_usable = has_pose & has_reading
     notes = [
@@ -109,7 +102,7 @@ def usable_rows(assigned: Assigned, n_cables: int, *, settled: bool) -> Rows:
         for left_out, lack in ((~has_pose, "a pose"), (has_pose & ~has_reading, "any reading"))
         if left_out.any()
     ]
-    if time := assigned.ours.get(TIME_NAME):
+    if time := assigned.ours.get(assign.TIME_NAME):
         faults += _time_faults(assigned.table, time, is_usable, settled=settled)
     if is_usable.sum() < FEWEST_ROWS:
         total = assigned.table.n_rows
@@ -141,7 +134,7 @@ def thinned(rows: Rows, *, settled: bool) -> Rows:
     return replace(rows, kept=mask, notes=[*rows.notes, text], thinned=text)
 
 
-def _text_faults(assigned: Assigned, columns: list[RawColumn]) -> list[Fault]:
+def _text_faults(assigned: assign.Assigned, columns: list[RawColumn]) -> list[Fault]:
     with_text = [column for column in columns if column.n_texts]
     in_top_row = [column.n_texts == 1 and column.texts[0].row == 0 for column in with_text]
     if len(with_text) > 1 and all(in_top_row):
@@ -161,10 +154,10 @@ def _text_faults(assigned: Assigned, columns: list[RawColumn]) -> list[Fault]:
     return assigned.table.first_few(faults, total, "cells with a text")
 
 
-def _with_pose(assigned: Assigned) -> tuple[BoolArray, list[Fault]]:
+def _with_pose(assigned: assign.Assigned) -> tuple[BoolArray, list[Fault]]:
     """Return which rows have a pose, and the faults of those that have half of one."""
     table = assigned.table
-    columns = assigned.present((*POSITION, *assigned.rotation)) if table.n_rows else []
+    columns = assigned.present((*assign.POSITION, *assigned.rotation)) if table.n_rows else []
     empty = [column for column in columns if column.is_empty]
     faults = [table.fault(None, column.name, "is empty", "a pose in each row") for column in empty]
     filled = [column for column in columns if not column.is_empty and not column.n_texts]
