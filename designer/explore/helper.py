@@ -209,9 +209,8 @@ def work(connection: Connection) -> None:
 
 
 def _answer(task: dict[str, Any], reporter: ThrottledReporter) -> Any:
-    from designer.explore.export import export
+    from designer.explore.export import export, optimised_study, sweep_study
     from designer.explore.measurements import diagnosis_answer
-    from designer.explore.plans import optimised_study, sweep_study
     from designer.explore.ropes import full_ropes
 
     answers: dict[Long, Callable[..., Any]] = {

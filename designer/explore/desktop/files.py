@@ -15,8 +15,7 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 from designer.errors import DesignerError
 from designer.explore.desktop.live_session import LONG, NAMES, LiveSession
 from designer.explore.desktop.settings import Settings
-from designer.explore.export import What, Written
-from designer.explore.plans import OptimisedStudy
+from designer.explore.export import OptimisedStudy, What, Written
 from designer.explore.session import Session
 from designer.plugins.find import Plugins
 from designer.report import format as fmt
