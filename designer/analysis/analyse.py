@@ -12,8 +12,12 @@ from typing import Any
 
 from designer.analysis.carries import Carries, carries_of
 from designer.analysis.findings import Findings, find
-from designer.analysis.governing import GoverningPose, governing_pose
-from designer.analysis.governing_ropes import GoverningRopes, governing_ropes
+from designer.analysis.governing import (
+    GoverningPose,
+    GoverningRopes,
+    governing_pose,
+    governing_ropes,
+)
 from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.analysis.provenance import Provenance
 from designer.analysis.requirements import requirements_of

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass, field
+
+import numpy as np
 
 from designer.analysis.first_failures import FirstFailure, first_failures
 from designer.analysis.reserve import Reserve, payload_reserve, region_reserve
-from designer.analysis.sensitivities import Sensitivities, sensitivities
+from designer.analysis.sensitivities import Sensitivities, Sensitivity, sensitivities
+from designer.documents.plain import Json
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult
 from designer.selection.result import SelectionResult
@@ -110,3 +114,34 @@ def _sizes(
                 tension_N, case = at_worst_N, case_found.case
         factor = case.safety_factor or safety_factor
         yield SizeBeside(candidate, case.name, tension_N, utilisation, factor / utilisation)
+
+
+def carries_dict(carries: Carries | None, groups: Sequence[Sensitivities]) -> Json:
+    """Return sensitivities, reserves, sizes and first failures; empty where none is chosen.
+
+    Of ``groups`` there are sensitivities alone, each with the name of its group.
+    """
+    if carries is None:
+        rows = [*_sensitivities(groups)]
+        return {"sensitivities": rows, "reserve": None, "sizes_beside": [], "first_failures": []}
+    return {
+        "sensitivities": [*_sensitivities([carries.sensitivities])],
+        "reserve": {
+            "payload_factor": math.nan if carries.payload is None else carries.payload.value,
+            "region_margin_m": math.nan if carries.region is None else carries.region.value,
+            "payload": carries.payload,
+            "region": carries.region,
+        },
+        "sizes_beside": carries.sizes,
+        "first_failures": carries.failures,
+    }
+
+
+def _sensitivities(of_ropes: Iterable[Sensitivities]) -> Iterator[Json]:
+    for of_rope in of_ropes:
+        rows: list[Json] = [asdict(sensitivity) for sensitivity in of_rope.each]
+        for (cable, axis), slope in np.ndenumerate(of_rope.exit_points_per_m):
+            name = f"exit_point_{cable + 1}_{'xyz'[axis]}"
+            rows.append(asdict(Sensitivity(name, math.nan, "m", float(slope), math.nan)))
+        group = of_rope.group and of_rope.group.name
+        yield from (row | {"method": of_rope.method, "group": group} for row in rows)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from designer.analysis.result_json import Json
+from designer.documents.plain import Json
 
 _TOLD = 1e-9
 """Relative difference below which numbers are the same: what a search at a flat optimum leaves."""

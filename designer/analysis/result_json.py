@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any
 
 from designer import __version__
 from designer.analysis.analyse import Analysis
-from designer.analysis.carries_json import carries_dict
-from designer.analysis.load_cases_json import load_cases_dict
+from designer.analysis.carries import carries_dict
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.selection_json import selection_dict
-from designer.analysis.uncertainty_json import uncertainty_dict
-from designer.documents.plain import RESULT_FORMAT, plain, record
+from designer.analysis.uncertainty.uncertainty import uncertainty_dict
+from designer.documents.plain import RESULT_FORMAT, Json, plain, record
+from designer.model.space import named_place
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
+from designer.selection.cases import CaseResult
 from designer.selection.qualities import Qualities
+from designer.statics.cable_loss import Fate
 from designer.study import Study
 from designer.workspace.interference import Interference
 
-Json = dict[str, Any]
 IsRead = Callable[[str], bool]
 """Whether a path of ``result.json`` is asked for, such as ``workspace.servable``."""
 
@@ -222,3 +222,46 @@ def _interference(survey: Interference) -> Json:
         "violating": survey.violating,
         "violated": survey.is_violated,
     }
+
+
+def load_cases_dict(analysis: Analysis) -> Json:
+    """Return each load case, each requirement, and the governing pose, None where no rope is."""
+    study, chosen = analysis.study, analysis.chosen
+    checks = analysis.requirements
+    if chosen is None or study.selection is None:
+        needs = [
+            _case(case.governing) | {"diameter_m": case.diameter_m, "holds": case.is_held}
+            for case in analysis.needs
+        ]
+        return {"load_cases": needs, "checks": checks, "governing": None}
+    return {
+        "load_cases": [_case(case) for case in chosen.cases],
+        "checks": checks,
+        "governing": analysis.governing,
+    }
+
+
+def _case(case: CaseResult) -> Json:
+    verification, loaded, loss = case.verification, case.loaded, case.loss
+    place = verification.worst_place
+    after = {
+        "fate": None if loss is None else Fate(int(loss.fate[0])).label,
+        "rest": None if loss is None else loss.rest.position_m[0],
+        "moved_m": None if loss is None else loss.moved_m[0],
+    }
+    figures = {
+        "name": case.case.name,
+        "holds": verification.holds,
+        "utilisation": verification.utilisation,
+        "max_tension_N": verification.max_tension_N,
+        "allowable_tension_N": loaded.cable.allowable_tension_N,
+        "axial_stiffness_N": loaded.cable.axial_stiffness_N,
+        "cable": case.most_used,
+        **named_place(place),
+        "lost_cable": loaded.lost_cable,
+        "temperature_change_K": case.case.temperature_change_K,
+        "wind_direction": loaded.wind,
+        "inertia_direction": loaded.inertia,
+        "refined": verification.is_refined,
+    }
+    return figures | after

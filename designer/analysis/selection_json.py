@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 from designer.arrays import FloatArray
-from designer.documents.plain import csv_text, plain, record
+from designer.documents.plain import Json, csv_text, plain, record
 from designer.model.space import turn_of
 from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate
 from designer.selection.groups.result import GroupChoice
 from designer.selection.result import GradeOutcome, SelectionResult
-
-Json = dict[str, Any]
 
 _LISTS = {
     "longest_m": "longest_{}_m",

@@ -17,7 +17,7 @@ from designer.cli.options import (
 
 if TYPE_CHECKING:
     from designer.analysis.comparison import Comparison
-    from designer.analysis.result_json import Json
+    from designer.documents.plain import Json
     from designer.grades.registry import Catalogue
     from designer.study import Study
 

@@ -24,7 +24,7 @@ from designer.diagnosis.hold import structure_left
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import block_of
 from designer.diagnosis.structure import Structure
-from designer.documents.plain import json_text, record
+from designer.documents.plain import Json, json_text, record
 from designer.effects.effect import Setting
 from designer.model.measured_data import KINDS, Measured, Noise
 from designer.study import Study

@@ -15,13 +15,11 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.errors_of import Error, Foretold, Outlier, Stage
 from designer.diagnosis.search import Proposal, Step
 from designer.diagnosis.structure import Correction, Structure, Whereabouts
-from designer.documents.plain import DIAGNOSIS_FORMAT, json_text, plain, record
+from designer.documents.plain import DIAGNOSIS_FORMAT, Json, json_text, plain, record
 from designer.effects.effect import Effect, Readings, Setting
 from designer.model.machine import Machine
 from designer.model.measured_data import KINDS, Measured, Noise, ReadingKind
 from designer.study import DeclaredEffect, Study
-
-Json = dict[str, Any]
 
 MOST_SCATTER = 1.5
 """Times the declared noise beyond which sensors do not explain what is left."""

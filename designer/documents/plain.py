@@ -21,6 +21,8 @@ import numpy as np
 
 from designer import __version__
 
+Json = dict[str, Any]
+"""A part of a file of results."""
 CONFIG_FORMAT = 1
 """Of studies."""
 GRADE_FORMAT = 1

@@ -9,14 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.result_json import Json
 from designer.analysis.selection_json import candidates_csv
 from designer.diagnosis.design import declared_by
 from designer.diagnosis.result import Diagnosis, effects_table
 from designer.documents.document import decode, document_of
 from designer.documents.edits import scalar, with_section, with_value
 from designer.documents.opened import read_input
-from designer.documents.plain import RESULT_FORMAT, why_unreadable
+from designer.documents.plain import RESULT_FORMAT, Json, why_unreadable
 from designer.errors import Fault, InputError
 from designer.io.config.moved import moved_to, path_from
 from designer.io.output import write_whole

@@ -12,8 +12,7 @@ import numpy as np
 from designer import __version__
 from designer.analysis.analyse import Analysis
 from designer.analysis.comparison import Comparison, ComparisonLine
-from designer.analysis.result_json import Json
-from designer.documents.plain import csv_text, finite, json_text
+from designer.documents.plain import Json, csv_text, finite, json_text
 from designer.optimum.plan import Limit, OptimisationPlan
 from designer.optimum.search import Searched
 from designer.optimum.trial import Trial

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from functools import cache, partial
 
-from designer.analysis.result_json import Json
+from designer.documents.plain import Json
 from designer.grades.grade import Grade
 from designer.model.requirement import State
 from designer.model.verdict import Verdict

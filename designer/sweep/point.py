@@ -10,8 +10,9 @@ from typing import Any
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.pose import analyse_pose
-from designer.analysis.result_json import Json, result_part, size_dict
+from designer.analysis.result_json import result_part, size_dict
 from designer.documents.document import Document, Key, Node
+from designer.documents.plain import Json
 from designer.effects.load import load_effects
 from designer.effects.registry import KnownEffects
 from designer.errors import DesignerError, InputError, described

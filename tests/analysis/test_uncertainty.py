@@ -17,9 +17,9 @@ from designer.analysis.uncertainty.shares import shares_of
 from designer.analysis.uncertainty.uncertainty import (
     UncertaintyAnalysis,
     exact_interval,
+    uncertainty_dict,
     uncertainty_of,
 )
-from designer.analysis.uncertainty_json import uncertainty_dict
 from designer.documents.plain import finite
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade, Modulus

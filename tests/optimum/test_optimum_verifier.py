@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from optimum_cases import plan_of
 
+from designer.optimum.optimise import MOST_VERIFIED, Verifier
 from designer.optimum.plan import Values
 from designer.optimum.trial import Trial
-from designer.optimum.verifier import MOST_VERIFIED, Verifier
 
 
 def tried(values: Values) -> Trial:

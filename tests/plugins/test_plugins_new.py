@@ -10,8 +10,8 @@ import pytest
 from wheels import install
 
 from designer.analysis.analyse import analyse
+from designer.cli.catalog import write_plugin
 from designer.cli.commands import main
-from designer.cli.new_plugin import write_plugin
 from designer.effects.load import load_effects
 from designer.errors import InputError, OutputError
 from designer.grades.registry import CatalogueSource, load_catalogue

@@ -23,17 +23,19 @@ from designer.analysis.uncertainty.poses import (
 )
 from designer.analysis.uncertainty.shares import SCRAMBLES, Share, shares_of
 from designer.arrays import FloatArray
+from designer.documents.plain import Json, record
 from designer.effects.design import AsBuilt
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase
 from designer.model.robot import Robot
-from designer.model.uncertainty import Input, Spread, Uncertainty, Uniform
+from designer.model.uncertainty import Input, Normal, Spread, Uncertainty, Uniform
 from designer.progress import Advance, Reporter
 from designer.selection.candidate import Candidate
 from designer.selection.efficiency import Allowance
 from designer.selection.result import SelectionResult
 from designer.study import Selection, Study
 
+_PERCENTILES = {"p05": 5.0, "median": 50.0, "p95": 95.0}
 CONFIDENCE = 0.95
 _ALONE, _ALONE_SLOWLY = 1024, 256
 """Draws where the modulus of the rope is all that is not certain, and nobody asked."""
@@ -286,3 +288,49 @@ class _Sampling:
             seed=self.seed,
             poses=sum(len(pose.places) for pose in poses),
         )
+
+
+def uncertainty_dict(uncertainty: UncertaintyAnalysis | None) -> Json | None:
+    """Return probability, utilisation, sizes and shares; None where no input is uncertain."""
+    if uncertainty is None:
+        return None
+    odds = record(uncertainty.chosen)
+    return {
+        "asked": uncertainty.is_asked,
+        "requirements": ["breaking_load"],  # of all that the study asks for, these are drawn
+        **{name: odds[name] for name in ("probability", "confidence", "not_held")},
+        "utilisation": _utilisation(uncertainty),
+        "inputs": [_input(uncertainty, name) for name in uncertainty.spreads],
+        "shares": uncertainty.shares,
+        "shares_reason": uncertainty.why_no_shares or None,
+        "sizes": uncertainty.sizes,
+        "samples": uncertainty.samples,
+        "share_points": uncertainty.points,
+        "seed": uncertainty.seed,
+        "poses": uncertainty.poses,
+        "searched": uncertainty.checked,
+    }
+
+
+def _utilisation(uncertainty: UncertaintyAnalysis) -> Json:
+    """Return what is stated, and of the draws what they have in common; infinite where not held."""
+    used = uncertainty.chosen.utilisation
+    finite_values = used[np.isfinite(used)]
+    return {
+        "stated": uncertainty.chosen.candidate.verification.utilisation,
+        "mean": finite_values.mean() if len(finite_values) else np.nan,
+        "standard_deviation": finite_values.std() if len(finite_values) else np.nan,
+        **{name: np.percentile(used, at, method="higher") for name, at in _PERCENTILES.items()},
+        "largest": used.max(),
+    }
+
+
+def _input(uncertainty: UncertaintyAnalysis, name: Input) -> Json:
+    spread = uncertainty.spreads[name]
+    if isinstance(spread, Normal):
+        shape: Json = {"distribution": "normal", "standard_deviation": spread.standard_deviation}
+    else:
+        shape = {"distribution": "uniform", "low": spread.low, "high": spread.high}
+    of_grade = name == "modulus" and uncertainty.is_modulus_of_grade
+    unit = "m" if name == "exit_points" else ""
+    return {"input": name, **shape, "unit": unit, "from": "grade" if of_grade else "study"}

@@ -8,8 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.maps import WorkspaceMaps, workspace_maps
-from designer.analysis.rope_maps import rope_maps
+from designer.analysis.maps import WorkspaceMaps, rope_maps, workspace_maps
 from designer.report import format as fmt
 from designer.report.design.carries import STEP_M, shares_of_inputs, slopes_of_moves
 from designer.report.design.pose import weight_effect
