@@ -170,13 +170,11 @@ def report(
     announce_compiling()
 
     from designer.analysis.analyse import analyse
-    from designer.io.results import write_results
-    from designer.report.render import REPORT_FILES, write_report_pages
+    from designer.report.render import REPORT_FILES, write_report_files
 
     with output_folder(folder, REPORT_FILES) as building, ProgressBars() as bars:
         analysis = analyse(study, catalogue, building, bars)
-        write_report_pages(analysis, building, template, bars)
-        write_results(analysis, building)
+        write_report_files(analysis, building, template, bars)
         written = file_names(building)
     print_left_out(filter(None, [why_no_scenes()]))
     print_summary(analysis, folder, written)

@@ -49,11 +49,10 @@ def optimise(
     begin_probe()
     announce_compiling()
 
-    from designer.io.results import write_results
     from designer.optimum.optimise import optimum_of
     from designer.optimum.plan import read_optimisation
     from designer.report.optimum import write_optimum
-    from designer.report.render import REPORT_FILES, write_report_pages
+    from designer.report.render import REPORT_FILES, write_report_files
 
     laid_out = read_optimisation(plan, with_plugins=not no_plugins)
     print_left_out(laid_out.base.catalogue().problems)
@@ -69,8 +68,7 @@ def optimise(
             optimum = optimum_of(laid_out, bars, stop)
         write_optimum(optimum, building, folder, template, bars)
         for place, analysis in zip(places, (optimum.given, optimum.optimised), strict=True):
-            write_report_pages(analysis, place, template, bars)
-            write_results(analysis, place)
+            write_report_files(analysis, place, template, bars)
         written = file_names(building)
     print_left_out(filter(None, [why_no_scenes()]))
     _print_summary(optimum)

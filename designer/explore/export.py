@@ -99,15 +99,13 @@ def export(
 def _report(question: Question, reporter: Reporter, folder: Path) -> Written:
     """Write the report, by the pipeline of the command."""
     from designer.analysis.analyse import analyse
-    from designer.io.results import write_results
     from designer.report.figures.opengl import begin_probe
-    from designer.report.render import REPORT_FILES, write_report_pages
+    from designer.report.render import REPORT_FILES, write_report_files
 
     begin_probe()
     with output_folder(folder, REPORT_FILES) as building:
         analysis = analyse(question.study, question.catalogue, building, reporter)
-        write_report_pages(analysis, building, reporter=reporter)
-        write_results(analysis, building)
+        write_report_files(analysis, building, reporter=reporter)
         written = [name for name in REPORT_FILES if (building / name).exists()]
     return tuple(folder / name for name in written)
 

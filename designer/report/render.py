@@ -126,18 +126,18 @@ def write_report(
     if templates is not None:
         check_templates(templates)
     with output_folder(Path(folder), REPORT_FILES) as building:
-        write_report_pages(analysis, building, templates)
-        write_results(analysis, building)
+        write_report_files(analysis, building, templates)
 
 
-def write_report_pages(
+def write_report_files(
     analysis: Analysis,
     folder: Path,
     templates: Path | None = None,
     reporter: Reporter = SILENT,
 ) -> None:
-    """Write ``report.html`` and ``report.pdf`` into an existing folder."""
+    """Write the report and all results into an existing folder."""
     write_pages(design_report(analysis), folder, templates, reporter)
+    write_results(analysis, folder)
 
 
 def write_pages(
