@@ -167,7 +167,7 @@ class Check:
         names = {"without": self.without, "with": self.declared, "unknowns_fitted": self.fitted}
         models = {name: model for name, model in names.items() if model is not None}
 
-        def of_each(attribute: str) -> result.Json | None:
+        def of_each(attribute: str) -> Json | None:
             values = {name: getattr(model, attribute) for name, model in models.items()}
             return values if any(value is not None for value in values.values()) else None
 
