@@ -97,9 +97,7 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     outcome, gains = keep_what_helps(outcome, problem, heldout, progress)
     # What is told of the model shall not depend on the path that the search took to it.
     problem = replace(problem, predict=predict.at(measured))
-    base = outcome.fit
-    if outcome.found:
-        base = fit(outcome.searcher.problem, case.given, ~heldout)
+    base = fit(outcome.searcher.problem, case.given, ~heldout) if outcome.found else outcome.fit
     first, last = base.settings, outcome.fit.settings
     before, after = problem.residual(first), problem.residual(last)
     predicted = problem.predicted(last)
