@@ -60,12 +60,13 @@ def contains(polygon_m: FloatArray, points_m: FloatArray) -> BoolArray:
 
 def nearest_on_edges_m(polygon_m: FloatArray, points_m: FloatArray) -> FloatArray:
     """Return the point of the boundary nearest to each of the points (n, 2) [m]."""
-    edges = edges_m(polygon_m)
-    to_point = points_m[:, None] - polygon_m
-    along = np.einsum("pek,ek->pe", to_point, edges) / np.sum(edges**2, axis=1)
-    feet = polygon_m + np.clip(along, 0.0, 1.0)[..., None] * edges
-    best = np.argmin(np.linalg.norm(feet - points_m[:, None], axis=2), axis=1)
-    return np.asarray(feet[np.arange(len(points_m)), best])
+    (x, y), (x_0, y_0) = points_m.T[..., None], polygon_m.T
+    u, v = edges_m(polygon_m).T
+    along = np.clip(((x - x_0) * u + (y - y_0) * v) / (u**2 + v**2), 0.0, 1.0)
+    feet_x, feet_y = x_0 + along * u, y_0 + along * v
+    rows = np.arange(len(points_m))
+    best = np.argmin((feet_x - x) ** 2 + (feet_y - y) ** 2, axis=1)
+    return np.column_stack([feet_x[rows, best], feet_y[rows, best]])
 
 
 def within_m(corners_m: FloatArray, share: FloatArray) -> FloatArray:
