@@ -18,10 +18,6 @@ from designer.selection.result import SelectionResult
 from designer.study import Study
 
 
-def _named_size(candidate: Candidate) -> dict[str, object]:
-    return {**candidate.ids, "total_mass_kg": candidate.total_mass_kg}
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class SizeBeside:
     """The chosen size, or the next one of its grade.
@@ -38,7 +34,9 @@ class SizeBeside:
         What is left of the breaking load over that tension.
     """
 
-    candidate: Candidate = field(metadata={"json": _named_size})
+    candidate: Candidate = field(
+        metadata={"json": lambda rope: rope.ids | {"total_mass_kg": rope.total_mass_kg}}
+    )
     load_case: str
     max_tension_N: float
     utilisation: float

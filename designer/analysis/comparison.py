@@ -171,15 +171,13 @@ def _unmet(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[ComparisonLin
     each = (
         sorted(result.get("checks", []), key=lambda c: c["state"] != "holds") for result in (a, b)
     )
-    checks_a, checks_b = ({_key(check): check for check in checks} for checks in each)
+    checks_a, checks_b = (
+        {f"{check['id']} in {check['load_case']}": check for check in checks} for checks in each
+    )
     for key in dict.fromkeys([*checks_a, *checks_b]):
         checks = checks_a.get(key), checks_b.get(key)
         if any(check is not None and check["state"] != "holds" for check in checks):
             yield ComparisonLine(key, key.replace("_", " "), *map(_check_words, checks))
-
-
-def _key(check: Mapping[str, Any]) -> str:
-    return f"{check['id']} in {check['load_case']}"
 
 
 def _check_words(check: Mapping[str, Any] | None) -> str | None:

@@ -36,11 +36,6 @@ _CHUNK = 2**18
 _THIN_M = 1e-3
 
 
-def _named_use(verification: Verification) -> dict[str, Any]:
-    names = ("max_tension_N", "utilisation")
-    return {name: getattr(verification, name) for name in names}
-
-
 def _named_worst(survey: WorkspaceMap) -> dict[str, Any]:
     worst, samples = survey.sagging, survey.census.samples
     return {
@@ -61,7 +56,11 @@ class MasslessChoice:
     """
 
     candidate: Candidate = field(metadata={"json": lambda rope: rope.ids})
-    verification: Verification = field(metadata={"json": _named_use})
+    verification: Verification = field(
+        metadata={
+            "json": lambda v: {"max_tension_N": v.max_tension_N, "utilisation": v.utilisation}
+        }
+    )
 
     also_in_files: ClassVar = ("safety_factor",)
 

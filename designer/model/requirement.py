@@ -29,11 +29,6 @@ class Answer(StrEnum):
     OPEN = "open"
 
 
-def _direction(loaded: Loaded | None) -> dict[str, str | None]:
-    """Return the direction of wind and inertia force as files of results name it."""
-    return {"direction": (None if loaded is None else loaded.words) or None}
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Requirement:
     """One thing that a study asks for, in one load case, where it comes nearest to failing.
@@ -76,7 +71,10 @@ class Requirement:
     utilisation: float = math.nan
     cable: int | None = None
     place: FloatArray | None = field(default=None, metadata={"json": named_place})
-    loaded: Loaded | None = field(default=None, metadata={"json": _direction})
+    loaded: Loaded | None = field(
+        default=None,
+        metadata={"json": lambda loaded: {"direction": (loaded and loaded.words) or None}},
+    )
     remark: str = ""
 
     also_in_files: ClassVar = ("holds",)

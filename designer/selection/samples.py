@@ -51,7 +51,8 @@ def over_samples(
         return []
     if any(candidate.keeps_lengths for candidate in loaded):
         return [over_kept_lengths(candidate, workspace, FEW_SAMPLES) for candidate in loaded]
-    if _leans(loaded[0], workspace):
+    # Which poses are left out the compiled sweep cannot tell: its down is the load.
+    if workspace.hangs_below == "exclude" and loaded[0].robot.cable_load_direction is not None:
         return [_one_by_one(candidate, workspace) for candidate in loaded]
     if loaded[0].case.changes_robot:
         return [
@@ -69,11 +70,6 @@ def over_kept_lengths(loaded: Loaded, workspace: Workspace, samples: int) -> Sam
     tension = np.where(counts, loss.largest_tension_N, -np.inf)
     longest = np.nan_to_num(loss.before.length_m[counts]).max(axis=0, initial=0.0)
     return _sampled(loaded.cable, places, tension, longest)
-
-
-def _leans(loaded: Loaded, workspace: Workspace) -> bool:
-    """Tell whether poses are left out that the compiled sweep cannot tell: its down is the load."""
-    return workspace.hangs_below == "exclude" and loaded.robot.cable_load_direction is not None
 
 
 def _one_by_one(loaded: Loaded, workspace: Workspace) -> Sampled:
