@@ -54,8 +54,8 @@ def sweep(
     from designer.sweep.plan import read_sweep
     from designer.sweep.store import opened, read_store, report_folder
 
-    laid_out, base = read_sweep(plan, with_plugins=not no_plugins)
-    print_left_out(base.catalogue().problems)
+    laid_out = read_sweep(plan, with_plugins=not no_plugins)
+    print_left_out(laid_out.base.catalogue().problems)
     path = output or Path(f"{plan.stem}.zarr")
     count = workers or running.processor_count()
     make = running.processes(count)
@@ -68,7 +68,7 @@ def sweep(
             if before:
                 print_left_out([f"{path}: goes on after {before} of {laid_out.n_points} points"])
             with ends_gently() as stop:
-                running.run(laid_out, base, store, make, count, bars, stop)
+                running.run(laid_out, store, make, count, bars, stop)
             n_pending = sum(map(len, store.pending()))
             if n_pending:
                 progress = f"{laid_out.n_points - n_pending} of {laid_out.n_points} points"

@@ -242,12 +242,12 @@ def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: P
     from designer.sweep.plan import read_sweep
     from designer.sweep.store import opened, read_store, report_folder
 
-    laid_out, base = read_sweep(plan, question.plugins.with_others)
-    _require_study_of(question, plan, laid_out.document.name)
+    laid_out = read_sweep(plan, question.plugins.with_others)
+    _require_study_of(question, plan, laid_out.base.document.name)
     folder, count = report_folder(target), running.processor_count()
     with output_folder(folder) as building:
         with opened(target, laid_out) as store:
-            running.run(laid_out, base, store, running.processes(count), count, reporter)
+            running.run(laid_out, store, running.processes(count), count, reporter)
         write_sweep(read_store(target), plan.stem, building)
         written = file_names(building)
     pages = sorted(written, key=lambda name: not name.endswith(".html"))

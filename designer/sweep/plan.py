@@ -103,23 +103,20 @@ class SweepPlan:
 
     Parameters
     ----------
-    document : Document
-        The study, as it is written.
+    base : Base
+        The study, as it is written, and what is kept of each.
     columns : tuple of SweptField
         The fields that are varied.
-    keep : tuple of str
-        Paths into ``result.json``.
     kinds : mapping
-        Of each of those, whether it is a number (`float`) or a text (`str`).
+        Of each path that is kept, whether it is a number (`float`) or a text (`str`).
     goals : mapping
         Of numbers that are kept: 1 for the less the better, -1 for the more the better.
     digest : str
         SHA-256 of all that the results depend on.
     """
 
-    document: Document
+    base: Base
     columns: tuple[SweptField, ...]
-    keep: tuple[str, ...]
     kinds: Mapping[str, type]
     goals: Mapping[str, int]
     digest: str
@@ -199,7 +196,7 @@ class SweepSection(Section):
     maximise: Goals = ()
 
 
-def read_sweep(path: Path, with_plugins: bool) -> tuple[SweepPlan, Base]:
+def read_sweep(path: Path, with_plugins: bool) -> SweepPlan:
     """Return the plan of a sweep, and the study that it starts from.
 
     That study is solved once, to know what results there are to keep.
@@ -225,7 +222,7 @@ def read_sweep(path: Path, with_plugins: bool) -> tuple[SweepPlan, Base]:
     base = Base(read_document(study_path), section.keep, with_plugins)
     faults += _faults_of_fields(document, base, fields)
     _refuse(faults)
-    kinds = _kinds(document, base, section.keep)
+    kinds = _kinds(document, base)
     goals = _goals(document, section, kinds)
     columns = columns_of(
         tuple(fields.values()), section.sampling, section.points or 0, section.seed
@@ -233,7 +230,7 @@ def read_sweep(path: Path, with_plugins: bool) -> tuple[SweepPlan, Base]:
     grades = [source.sha256 for source in base.catalogue().sources]
     origin = [document.root.as_written(), base.document.sha256, *grades, __version__]
     digest = hashlib.sha256(json.dumps(origin).encode()).hexdigest()
-    return SweepPlan(base.document, columns, section.keep, kinds, goals, digest), base
+    return SweepPlan(base, columns, kinds, goals, digest)
 
 
 def _refuse(faults: Sequence[Fault]) -> None:
@@ -342,12 +339,12 @@ def _faults_of_fields(
                     yield document.fault(("vary", name), fault.problem, fault.expected)
 
 
-def _kinds(document: Document, base: Base, keep: Sequence[str]) -> dict[str, type]:
+def _kinds(document: Document, base: Base) -> dict[str, type]:
     """Return which kept values are numbers and which texts, from the study as it is."""
     result = base.result(base.study())
     kinds: dict[str, type] = {}
     faults = []
-    for index, name in enumerate(keep):
+    for index, name in enumerate(base.keep):
         problem = expected = ""
         try:
             value: Any = value_at(result, name)

@@ -16,7 +16,7 @@ from designer.errors import DesignerError, OutputError, described
 from designer.io.process import SPAWN, children_are_deaf, end_with_parent
 from designer.progress import SILENT, Reporter
 from designer.sweep.plan import SweepPlan
-from designer.sweep.point import Base, solve_points
+from designer.sweep.point import solve_points
 from designer.sweep.store import Store
 
 _AHEAD = 2
@@ -42,7 +42,6 @@ def processes(workers: int) -> MakeExecutor:
 
 def run(
     plan: SweepPlan,
-    base: Base,
     store: Store,
     make_executor: MakeExecutor,
     workers: int,
@@ -63,14 +62,11 @@ def run(
     deaths: Counter[range] = Counter()
     with reporter.task("sweep", sum(map(len, waiting))) as advance:
         while waiting and not stop():
-            _run_until_death(
-                plan, base, store, make_executor, workers, waiting, deaths, advance, stop
-            )
+            _run_until_death(plan, store, make_executor, workers, waiting, deaths, advance, stop)
 
 
 def _run_until_death(
     plan: SweepPlan,
-    base: Base,
     store: Store,
     make_executor: MakeExecutor,
     workers: int,
@@ -99,7 +95,7 @@ def _run_until_death(
                 while waiting and may_add():
                     changes = [plan.changes(point) for point in waiting[0]]
                     with children_are_deaf():
-                        running[executor.submit(solve_points, base, changes)] = waiting[0]
+                        running[executor.submit(solve_points, plan.base, changes)] = waiting[0]
                     waiting.popleft()
                 for future in wait(running, _ASKS_S, FIRST_COMPLETED).done:
                     result = _result(future)
@@ -114,7 +110,7 @@ def _run_until_death(
         if len(running) == 1 and deaths[waiting[0]] > _MOST_DEATHS:
             points = waiting.popleft()
             del deaths[points]
-            no_values = [None] * len(plan.keep)
+            no_values = [None] * len(plan.base.keep)
             store.write(points, [(no_values, "its process ended without an answer")] * len(points))
             advance(len(points))
 

@@ -50,7 +50,7 @@ class Store:
     def write(self, points: range, results: Sequence[tuple[Sequence[Any], str]]) -> None:
         """Write the results of a chunk: what is kept of each point, and why there is nothing."""
         place, reasons = slice(points.start, points.stop), [why for _, why in results]
-        for k, name in enumerate(self._plan.keep):
+        for k, name in enumerate(self._plan.base.keep):
             kind = self._plan.kinds[name]
             values = [_as_kind(values_kept[k], kind) for values_kept, _ in results]
             self._array(name)[place] = np.array(values, dtype=object if kind is str else float)

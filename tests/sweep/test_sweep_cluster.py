@@ -79,9 +79,9 @@ def test_a_worker_and_the_scheduler_are_killed_and_the_store_is_that_of_a_local_
     tmp_path: Path,
 ) -> None:
     path = written(tmp_path, SWEEP.replace("count: 3", "count: 80"))
-    plan, base = read_sweep(path, with_plugins=False)
+    plan = read_sweep(path, with_plugins=False)
     with opened(tmp_path / "alone.zarr", plan) as store:
-        run(plan, base, store, lambda: ThreadPoolExecutor(1), 1)
+        run(plan, store, lambda: ThreadPoolExecutor(1), 1)
 
     target, port = tmp_path / "out.zarr", free_port()
     command = [sys.executable, "-m", "designer", "sweep", str(path), "-o", str(target)]

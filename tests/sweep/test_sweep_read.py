@@ -22,11 +22,11 @@ def lines(path: Path) -> list[str]:
 
 
 def test_a_plan_knows_its_points_and_kinds(tmp_path: Path) -> None:
-    plan, base = read_sweep(written(tmp_path), with_plugins=False)
+    plan = read_sweep(written(tmp_path), with_plugins=False)
     assert plan.n_points == 9
     assert plan.kinds == {"pose.optimum.diameter_m": float, "pose.sagging.status": str}
     assert plan.goals == {"pose.optimum.diameter_m": 1}
-    study = base.study(plan.changes(8))
+    study = plan.base.study(plan.changes(8))
     assert study.robot.platform.mass_kg == 200.0
     assert study.pose is not None
     assert study.pose.position_m.tolist() == [10.0, 6.0, 5.0]
@@ -34,13 +34,13 @@ def test_a_plan_knows_its_points_and_kinds(tmp_path: Path) -> None:
 
 def test_a_range_of_one_value_is_a_grid_of_one_point(tmp_path: Path) -> None:
     narrow = SWEEP.replace("to: 200 kg, count: 3", "to: 100 kg, count: 1")
-    plan, _ = read_sweep(written(tmp_path, narrow), with_plugins=False)
+    plan = read_sweep(written(tmp_path, narrow), with_plugins=False)
     assert plan.n_points == 3
 
 
 def test_the_digest_is_that_of_what_counts(tmp_path: Path) -> None:
     digests = [
-        read_sweep(written(tmp_path, sweep), with_plugins=False)[0].digest
+        read_sweep(written(tmp_path, sweep), with_plugins=False).digest
         for sweep in (SWEEP, "# a remark\n" + SWEEP, SWEEP.replace("count: 3", "count: 4"))
     ]
     assert digests[0] == digests[1] != digests[2]

@@ -41,9 +41,9 @@ def in_threads() -> ThreadPoolExecutor:
 
 
 def swept(path: Path, target: Path, make: running.MakeExecutor = in_threads) -> None:
-    plan, base = read_sweep(path, with_plugins=False)
+    plan = read_sweep(path, with_plugins=False)
     with opened(target, plan) as store:
-        run(plan, base, store, make, 1)
+        run(plan, store, make, 1)
 
 
 def same(a: Path, b: Path) -> bool:
@@ -268,7 +268,7 @@ def test_the_store_of_another_sweep_is_left_alone(tmp_path: Path) -> None:
 
 def test_two_runs_do_not_fill_one_store(tmp_path: Path) -> None:
     path, target = written(tmp_path), tmp_path / "out.zarr"
-    plan, _ = read_sweep(path, with_plugins=False)
+    plan = read_sweep(path, with_plugins=False)
     with opened(target, plan), pytest.raises(OutputError, match="another run fills this store"):
         swept(path, target)
 
@@ -398,5 +398,5 @@ def test_no_worker_outlives_a_sweep(tmp_path: Path, number: str) -> None:
 
 
 def test_plans_do_not_share_points(tmp_path: Path) -> None:
-    plan: SweepPlan = read_sweep(written(tmp_path), with_plugins=False)[0]
+    plan: SweepPlan = read_sweep(written(tmp_path), with_plugins=False)
     assert len({str(plan.changes(point)) for point in range(plan.n_points)}) == plan.n_points
