@@ -178,7 +178,7 @@ def test_the_best_rope_is_proved_as_in_the_report(yard: Session) -> None:
     assert ours.bound == pytest.approx(theirs.bound, rel=WITHIN)  # batches depend on the machine
     best = full.row(full.best)
     assert best is not None
-    assert best.utilisation == ours.found
+    assert best.verification.utilisation == ours.found
 
 
 def test_a_rope_that_is_too_thick_for_the_sheave_does_not_count_as_holding(yard: Session) -> None:
