@@ -122,7 +122,7 @@ def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Written:
         tables["map.csv"] = _csv([*columns], (dict(zip(columns, row, strict=True)) for row in rows))
     ropes = ropes or quick_ropes(question)
     if ropes is not None:
-        tables["ropes.csv"] = _csv([*_ROPE_COLUMNS, "x_m", "y_m", "z_m"], map(_rope, ropes.rows))
+        tables["ropes.csv"] = rope_table(ropes)
     with output_folder(folder) as building:
         for name, text in tables.items():
             (building / name).write_bytes(text.encode())
@@ -135,6 +135,11 @@ def map_columns(chart: MapAnswer) -> dict[str, Any]:
     return columns | {
         name: chart.values[key] for key, name in COLUMNS.items() if key in chart.values
     }
+
+
+def rope_table(ropes: Ropes) -> str:
+    """Return what becomes of each rope as the text of a CSV."""
+    return _csv([*_ROPE_COLUMNS, "x_m", "y_m", "z_m"], map(_rope, ropes.rows))
 
 
 def _rope(row: RopeRow) -> dict[str, Any]:

@@ -187,7 +187,7 @@ class Encloser:
             step[:, d] = half[:, d]
             ahead, there = self._solve(middle + step, raised)
             behind, too = self._solve(middle - step, raised)
-            # Where another branch begins between them, the slope of the middle's own.
+            # The smaller difference: where another branch begins on one side, that of the middle.
             before, after = pull - behind, ahead - pull
             change = np.where(np.abs(before) < np.abs(after), before, after)
             change = np.where((there & too)[:, None] & (before * after > 0.0), change, 0.0)

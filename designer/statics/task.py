@@ -37,8 +37,8 @@ _WORTH_A_SEARCH = 5e-4
 _SAME = 1e-7
 """Relative: what two searches may leave between them that end in the same branch."""
 _FEW_TURNS = 5
-"""Of pulleys, before poses that have come to rest are left out; of a search, which costs more than
-all else, only the first: a pose without an answer rests at once."""
+"""Of pulleys, before poses that have come to rest are left out. A search, which costs more than
+all else, leaves them out after its first turn: a pose without an answer rests at once."""
 LONG = 1.5
 """Length over chord above which a cable counts as far too long."""
 

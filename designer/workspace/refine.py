@@ -35,7 +35,7 @@ _APART = 0.025
 """Between starts about the end of a climb, as a share of the space."""
 _CLOSE = 0.01
 """Relative: how far an end may stay below the best to be one of the highest."""
-_REACHED = 2.0
+_MORE_RISE = 2.0
 """How much a climb may still rise, over what the first part brought to any of its extreme."""
 _MOST_TURNS = 200
 """A demand that grows in ever smaller steps, as at the edge of what can be held, has no end."""
@@ -70,7 +70,7 @@ class Effort:
     revisited: int = 3  # The highest ends, about which starts closer together are tried
     beside: int = 4  # Such starts about each of them at most
     tried_beside: int = 128  # Places of which they are the largest
-    trials: int = 4  # Random places tried about each in a turn for each coordinate, beside its ends
+    trials: int = 4  # Random places a coordinate tried about each in a turn, beside those along it
     # Whether each landmark is a start, rather than only those that nothing near them exceeds
     from_landmarks: bool = True
     tolerance: float = 1e-9  # Size of the last cloud, as a share of the space
@@ -254,7 +254,7 @@ class _PoseSearch:
             points = np.concatenate(list(map(space.places, space.region.samples_m(1, "grid", 0))))
             self._ask_each([points] * self._count, every)
             return self._worsts
-        common = np.concatenate([marks := self._marks, self._scatter(0)])
+        marks, common = self._marks, np.concatenate([self._marks, self._scatter(0)])
         places = [np.concatenate([of_search, common]) for of_search in starts]
         values = self._ask_each(places, every)
         landmarks = [len(of_search) + np.arange(len(marks)) for of_search in starts]
@@ -404,7 +404,7 @@ class _PoseSearch:
         best = self._best[climbs.search, climbs.extreme]
         reach = np.zeros(climbs.kind.max(initial=0) + 1)
         np.maximum.at(reach, climbs.kind, rise)
-        margin = np.maximum(_REACHED * reach[climbs.kind], _CLOSE * np.abs(best))
+        margin = np.maximum(_MORE_RISE * reach[climbs.kind], _CLOSE * np.abs(best))
         is_open = self._has_border[climbs.search]
         return np.flatnonzero(is_open | (climbs.value >= best - margin))
 
@@ -454,7 +454,7 @@ class _PoseSearch:
             climbs.radius[active] = climb.radius * np.where(better, 1.1, shrinks)
 
     def _are_marks(self, at: FloatArray) -> BoolArray:
-        """Tell which places are landmarks; what is largest there hardly is by chance."""
+        """Tell which places are landmarks of the space, such as its corners."""
         return np.asarray((at[:, None] == self._marks).all(axis=2).any(axis=1))
 
     def _ask_about(self, climbs: _Climbs, places: FloatArray) -> FloatArray:

@@ -13,6 +13,7 @@ import pytest
 from designer.analysis.analyse import Analysis, analyse
 from designer.analysis.pose import analyse_pose
 from designer.cli.commands import main
+from designer.explore.export import rope_table
 from designer.explore.here import here
 from designer.explore.map import map_answer, unserved, values_at, worst_answer
 from designer.explore.quantities import CHEAP, QUANTITIES, category_labels
@@ -371,9 +372,7 @@ def test_effects_act_as_in_the_report(tmp_path: Path, no_plugins: Plugins, yard:
     assert analysis.selection is not None
     ropes = full_ropes(question)
     assert ropes is not None
-    assert [(row.standing, row.reason) for row in ropes.rows] == [
-        (row.standing, row.reason) for row in ropes_of(analysis.selection).rows
-    ]
+    assert rope_table(ropes) == rope_table(ropes_of(analysis.selection))
 
 
 def test_words_for_every_category() -> None:
