@@ -114,6 +114,12 @@ def read_quantity(value: object, dimension: Dimension) -> float:
         raise error.about(value, dimension.expected) from None
 
 
+def unit_conversion(unit: str, dimension: Dimension) -> tuple[float, float]:
+    """Return scale and offset from numbers in a unit to SI; raises as `read_quantity` does."""
+    zero, unit_SI = (read_quantity(f"{number} {unit}", dimension) for number in (0, 1))
+    return unit_SI - zero, zero
+
+
 def split_quantity(value: object) -> tuple[float, str] | None:
     """Return number and unit of a quantity as they are written; None for what is none."""
     number = _NUMBER.match(str(value).strip())

@@ -107,7 +107,7 @@ def test_without_a_workspace_the_pose_sizes_the_cable(tmp_path, designer) -> Non
         ("x_m,y_m,z_m\n1,2,3,4\n", ":2: row 1 has 4 values"),
         ("x_m,y_m,z_m,rx_rad\n1,2,3,0\n", ":1: ry_rad: there is no such column"),
         ("x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n1,2,3,0,0,0.1\n", ":2: rx_rad: row 1 turns a point"),
-        ("x_m;y_m;z_m\n1;2;3\n", ":1: the columns are separated by semicolons"),
+        ("x_m;y_m;z_m\nmm;m;m\n1;2;3\n", ":2: x_m: the row of units says 'mm'"),
     ],
 )
 def test_faulty_tables(tmp_path, designer, text, line) -> None:

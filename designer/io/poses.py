@@ -12,7 +12,7 @@ from designer.arrays import FloatArray
 from designer.documents.bounds import BOUNDS
 from designer.documents.opened import open_input, reason
 from designer.errors import Fault, InputError
-from designer.measured.assign import POSITION, ROTATION_VECTOR
+from designer.measured.assign import POSITION, ROTATION_VECTOR, unit_faults
 from designer.measured.table import LogTable, RawColumn, read_table
 from designer.model.robot import Poses, Robot
 
@@ -64,6 +64,8 @@ def read_poses(path: Path, robot: Robot) -> PoseTable:
         table = read_table(file, str(path))
     columns = {column.name: column for column in table.columns}
     faults = [*table.faults, *_column_faults(table, columns)]
+    for name in _OURS:
+        faults += unit_faults(table, columns[name]) if name in columns else ()
     if not faults:
         faults = [*_cell_faults(table, [columns[name] for name in _OURS if name in columns])]
     if faults:

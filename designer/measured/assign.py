@@ -11,7 +11,19 @@ from designer.measured.table import LogTable, RawColumn
 from designer.model.measurements import POSES, LogColumn, Measurements
 from designer.spelling import did_you_mean
 from designer.study import Study
-from designer.units import ANGLE, FORCE, LENGTH, NUMBER, SPEED, TEMPERATURE, TIME, Dimension
+from designer.units import (
+    ANGLE,
+    FORCE,
+    LENGTH,
+    NUMBER,
+    SPEED,
+    TEMPERATURE,
+    TIME,
+    Dimension,
+    QuantityError,
+    describe,
+    unit_conversion,
+)
 
 TIME_NAME = "time_s"
 TEMPERATURE_NAME = "temperature_C"
@@ -183,9 +195,32 @@ def _assign_mapped(
     elif entry.target == COVARIATE:
         assigned.covariates[entry.name] = column
     elif entry.target != IGNORE:
-        assigned.ours[entry.target] = replace(
-            column, values=column.values * entry.scale + entry.offset
-        )
+        values = column.values
+        if column.unit and not entry.has_unit:
+            try:
+                scale, zero = unit_conversion(column.unit, dimension_of(entry.target) or NUMBER)
+                values = values * scale + zero
+            except QuantityError as error:
+                assigned.faults.append(_unit_fault(assigned.table, column, error.expected))
+        values = values * entry.scale + entry.offset
+        assigned.ours[entry.target] = replace(column, values=values)
+
+
+def unit_faults(table: LogTable, column: RawColumn, hint: str = "") -> Iterator[Fault]:
+    """Yield the fault of a column of ours whose unit in the row of units is not that of its name."""
+    dimension = dimension_of(column.name) or NUMBER
+    if not column.unit:
+        return
+    try:
+        if unit_conversion(column.unit, dimension) != (1.0, 0.0):
+            yield _unit_fault(table, column, f"{dimension.unit}, as its name says{hint}")
+    except QuantityError as error:
+        yield _unit_fault(table, column, error.expected)
+
+
+def _unit_fault(table: LogTable, column: RawColumn, expected: str) -> Fault:
+    problem = f"the row of units says {describe(column.unit)}"
+    return Fault(table.name, table.units_line, column.name, problem, expected)
 
 
 def _assign_by_name(assigned: Assigned, column: RawColumn, study: Study) -> None:
@@ -198,6 +233,8 @@ def _assign_by_name(assigned: Assigned, column: RawColumn, study: Study) -> None
         assigned.notes.append(f"{name} was left out: a point mass has no orientation")
     elif name in standard_names(robot.n_cables):
         assigned.ours[name] = column
+        hint = f"; or {{to: {name}, unit: {column.unit}}} in {_MAP}"
+        assigned.faults.extend(unit_faults(assigned.table, column, hint))
     elif cable_of(name) is not None:
         problem = f"there is no such cable, the robot has {robot.n_cables}"
         expected = f"cables 1 to {robot.n_cables}; or '{name}: {IGNORE}' in {_MAP}"

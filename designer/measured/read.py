@@ -22,7 +22,15 @@ from designer.measured.assign import (
     length_names,
     tension_names,
 )
-from designer.measured.rows import Rows, cell_faults, is_numeric, thinned, usable_rows
+from designer.measured.rows import (
+    EPOCH_S,
+    Rows,
+    cell_faults,
+    is_numeric,
+    thinned,
+    usable_rows,
+    utc,
+)
 from designer.measured.sense import sense_faults, unit_faults
 from designer.measured.table import LogTable, read_table
 from designer.model.measured_data import Measured
@@ -145,6 +153,9 @@ def _measured(
     row_numbers = np.flatnonzero(mask).astype(np.int64) + 1
     row_numbers.setflags(write=False)
     time = varying(assigned, TIME_NAME, mask, notes)
+    if time is not None and (time[0] >= EPOCH_S or assigned.ours[TIME_NAME].first_time):
+        notes.append(f"{assigned.ours[TIME_NAME].name} is counted from {utc(time[0])}")
+        time = frozen_array(time - time[0])
     return Measured(
         poses=poses,
         length_m=frozen_array(_stacked(assigned, lengths, mask)),
@@ -250,8 +261,9 @@ def covariates(assigned: Assigned, mask: BoolArray, notes: list[str]) -> dict[st
         values = column.values[mask]
         is_text = not is_numeric(column) and not column.is_empty
         flaw = _flaw(values)
-        if is_text or flaw:
-            reason = "they hold text" if is_text else f"they are {flaw}"
+        if is_text or flaw or column.first_time:
+            reason = f"they are {flaw}" if flaw else "they hold times"
+            reason = "they hold text" if is_text else reason
             reasons.setdefault(reason, []).append(name)
         else:
             used[name] = frozen_array(values)

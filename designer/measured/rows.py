@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from datetime import UTC, datetime
 
 import numpy as np
 
@@ -22,6 +23,15 @@ MOST_ROWS = 10_000
 _RUN = 50
 """Poses at rest that follow one another: in which direction a cable has moved shows between two."""
 _LARGEST_NUMBER = 1e30
+EPOCH_S = 1e8
+"""Times from here on are counted from 1970: no log counts three years from its own start."""
+_LONGEST_LOG_S = 3.2e8
+_SMALL_UNITS = {
+    "ms": ("milliseconds", 1e3),
+    "us": ("microseconds", 1e6),
+    "ns": ("nanoseconds", 1e9),
+}
+_MAP = "measurements.columns"
 _BOUNDS = {
     LENGTH: (-1e7, 1e7),  # these three as in the config
     FORCE: (-1e20, 1e20),
@@ -77,6 +87,13 @@ def cell_faults(assigned: assign.Assigned) -> list[Fault]:
             problem = f"has the value {value:g}"
             faults.append(assigned.table.fault(int(row), column.name, problem, expected))
     wild = assigned.table.first_few(faults, total, "values out of all bounds")
+    wild += [
+        assigned.table.fault(
+            cell.row, column.name, f"has the time {describe(cell.text)}", "a number"
+        )
+        for name, column in assigned.ours.items()
+        if name != assign.TIME_NAME and (cell := column.first_time)
+    ]
     return [*_text_faults(assigned, [column for _, column in columns]), *wild]
 
 
@@ -136,16 +153,12 @@ def thinned(rows: Rows, *, settled: bool) -> Rows:
 
 def _text_faults(assigned: assign.Assigned, columns: list[RawColumn]) -> list[Fault]:
     with_text = [column for column in columns if column.n_texts]
-    in_top_row = [column.n_texts == 1 and column.texts[0].row == 0 for column in with_text]
-    if len(with_text) > 1 and all(in_top_row):
-        text = describe(with_text[0].texts[0].text)
-        problem = f"holds texts, such as {text}, in {len(with_text)} columns"
-        expected = "numbers; units of columns go into measurements.columns"
-        return [assigned.table.fault(0, "", problem, expected)]
     faults = []
     for column in with_text:
         for cell in column.texts:
             expected = "a number, or nothing where there is none"
+            if column is assigned.ours.get(assign.TIME_NAME):
+                expected = "a number, or a time such as 2026-05-03T10:00:00.5Z"
             if "," in cell.text and is_number(cell.text.replace(",", "")):
                 expected = "a number with a decimal point and without commas"
             problem = f"has the text {describe(cell.text)}"
@@ -181,6 +194,17 @@ def _time_faults(
         yield from table.first_few(missing, len(rows), "rows without a time")
     rows = np.flatnonzero(mask & np.isfinite(time.values))
     values = time.values[rows]
+    for unit, (called, factor) in _SMALL_UNITS.items():
+        if len(rows) and EPOCH_S <= values[0] / factor < 100.0 * EPOCH_S:
+            problem = f"has {values[0]:.4g} s, as if it were {called} since 1970"
+            expected = f"seconds, or {{to: {assign.TIME_NAME}, unit: {unit}}}"
+            yield table.fault(int(rows[0]), time.name, problem, f"{expected} in {_MAP}")
+            return
+    if len(rows) and np.ptp(values) > _LONGEST_LOG_S:
+        problem = f"spans {np.ptp(values):.4g} s, which is more than ten years"
+        expected = f"seconds, or another unit as {{to: {assign.TIME_NAME}, unit: ns}} in {_MAP}"
+        yield table.fault(None, time.name, problem, expected)
+        return
     if not settled and len(rows) and np.ptp(values) == 0.0:
         expected = "a time that grows, or no such column"
         yield table.fault(None, time.name, "is the same in all rows", expected)
@@ -190,12 +214,22 @@ def _time_faults(
     for place in places[:MOST_ALIKE]:
         earlier, at = values[place : place + 2]
         how = "the same time as" if at == earlier else "before"
-        problem = f"has {at:.10g} s, {how} row {rows[place] + 1}"
+        problem = f"has {_written(at, time)}, {how} row {rows[place] + 1}"
         if at != earlier:
-            problem += f" with {earlier:.10g} s"
+            problem += f" with {_written(earlier, time)}"
         expected = "rows in the order of their time"
         faults.append(table.fault(int(rows[place + 1]), time.name, problem, expected))
     yield from table.first_few(faults, len(places), "rows out of order")
+
+
+def _written(time_s: float, column: RawColumn) -> str:
+    """Return a time as the column has it."""
+    return utc(time_s) if column.first_time else f"{time_s:.15g} s"
+
+
+def utc(time_s: float) -> str:
+    """Return a time in seconds since 1970 as ISO 8601 has it."""
+    return datetime.fromtimestamp(time_s, UTC).isoformat().replace("+00:00", "Z")
 
 
 def _row_list(rows: IntArray) -> str:

@@ -1,4 +1,8 @@
-"""Reads a CSV file of any origin into columns of numbers, within bounds of size."""
+"""Reads a table of any origin into columns of numbers, within bounds of size.
+
+Columns of a text are separated by commas, or by semicolons or tabs, with decimal points or commas
+then. A row below the head without any number holds the columns' units.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,8 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import islice
+from datetime import UTC, datetime
+from itertools import chain, islice
 from typing import BinaryIO, NamedTuple, NoReturn
 
 import numpy as np
@@ -21,16 +26,18 @@ LARGEST_FILE_BYTES = 1_000_000_000
 _LONGEST_LINE_BYTES = 1_000_000
 _CONTROL_CODE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 _EXPECTED = "a CSV file: names of columns in its first line, numbers below"
+_WITH_DECIMALS = re.compile(r"\s*[-+]?\d*([.,])\d+(?:[eE][-+]?\d+)?\s*")
+_ISO_TIME = re.compile(r"\s*\d{4}-\d\d-\d\d[T ]\d\d:\d\d.*")
 
 
 MOST_ALIKE = 20
 """How many faults of one kind are told one by one; nobody reads more."""
 
-_NOTHING = frozenset({"", "nan", "-nan", "na"})
+_NOTHING = frozenset({"", "nan", "-nan", "na", "n/a", "#n/a", "null", "none", "-"})
 
 
 class TextCell(NamedTuple):
-    """A cell that holds a text: its row, counted from 0, and the text."""
+    """A cell that holds a text or a time: its row, counted from 0, and how it is written."""
 
     row: int
     text: str
@@ -45,17 +52,24 @@ class RawColumn:
     name : str
         Its name; empty where the first line has none.
     values : array (n_rows,)
-        Its numbers; NaN where there is nothing, or a text.
+        Its numbers; NaN where there is nothing, or a text. Times as in ISO 8601 are seconds since
+        1970, UTC where they name no zone.
     n_texts : int
         How many cells hold a text.
     texts : tuple of TextCell
         The first few of those.
+    first_time : TextCell or None
+        The first cell with a time as in ISO 8601.
+    unit : str
+        What the row of units says; empty without.
     """
 
     name: str
     values: FloatArray
     n_texts: int = 0
     texts: tuple[TextCell, ...] = ()
+    first_time: TextCell | None = None
+    unit: str = ""
 
     @property
     def n_numbers(self) -> int:
@@ -70,7 +84,7 @@ class RawColumn:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LogTable:
-    """A CSV file.
+    """A table as a file has it.
 
     Parameters
     ----------
@@ -84,6 +98,8 @@ class LogTable:
         Rows of another width, which are left out, and names that stand twice.
     sha256 : str
         Digest of the file's bytes.
+    units_line : int or None
+        Line of the row of units.
     """
 
     name: str
@@ -91,6 +107,7 @@ class LogTable:
     lines: IntArray
     faults: tuple[Fault, ...] = ()
     sha256: str = ""
+    units_line: int | None = None
 
     @property
     def n_rows(self) -> int:
@@ -124,6 +141,7 @@ def read_table(file: BinaryIO, name: str) -> LogTable:
     digest = hashlib.sha256()
     rows = _rows(_lines(file, name, digest.update), name)
     names = _head(rows, name)
+    units, units_line, rows = _units(rows, len(names))
     columns = [_Filling() for _ in names]
     lines: list[int] = []
     misfits: list[tuple[int, int]] = []
@@ -138,9 +156,12 @@ def read_table(file: BinaryIO, name: str) -> LogTable:
         for column, filled in zip(columns, zip(*whole_rows, strict=True), strict=True):
             column.add(filled, first_row)
     filled_columns = tuple(
-        column.column(title) for title, column in zip(names, columns, strict=True)
+        column.column(*head)
+        for head, column in zip(zip(names, units, strict=True), columns, strict=True)
     )
-    table = LogTable(name, filled_columns, np.array(lines, dtype=np.int64), (), digest.hexdigest())
+    table = LogTable(
+        name, filled_columns, np.array(lines, dtype=np.int64), (), digest.hexdigest(), units_line
+    )
     expected = f"{len(names)}, as the first line has names"
     of_another_width = (
         table.fault(row, "", f"has {width} value{'s' * (width != 1)}", expected)
@@ -183,7 +204,16 @@ def _lines(file: BinaryIO, name: str, see: Callable[[bytes], None]) -> Iterator[
 
 def _rows(lines: Iterator[str], name: str) -> Iterator[tuple[int, list[str]]]:
     """Yield each row that is not blank, with the line where it starts."""
-    reader = csv.reader(lines)
+    head: list[str] = []
+    for text in lines:
+        head.append(text)
+        if text.strip():
+            break
+    # Commas within quotes separate nothing; a comma where there are as many of each.
+    marks = re.sub(r'"[^"]*"', "", "".join(head[-1:]))
+    delimiter = max(",;\t", key=marks.count)
+    reader = csv.reader(chain(head, lines), delimiter=delimiter)
+    decimals: dict[str, int] = {}  # the first line with each mark
     while True:
         line = reader.line_num + 1
         try:
@@ -195,8 +225,23 @@ def _rows(lines: Iterator[str], name: str) -> Iterator[tuple[int, list[str]]]:
                 expected = "line feeds, as text files have now"
                 _refuse(name, line, "the lines end with carriage returns alone", expected)
             _refuse(name, line, f"this is not valid CSV: {error}")
+        if delimiter != ",":
+            cells = [_with_point(cell, line, decimals) for cell in cells]
+        if len(decimals) > 1:
+            comma, point = decimals[","], decimals["."]
+            problem = f"line {comma} has a decimal comma, line {point} a decimal point"
+            _refuse(name, line, problem, "one of them in the whole file")
         if len(cells) > 1 or "".join(cells).strip():
             yield line, cells
+
+
+def _with_point(cell: str, line: int, decimals: dict[str, int]) -> str:
+    """Return a cell with a decimal point, and note in which line its mark is seen first."""
+    match = _WITH_DECIMALS.fullmatch(cell)
+    if match is None:
+        return cell
+    decimals.setdefault(match[1], line)
+    return cell.replace(",", ".")
 
 
 def _head(rows: Iterator[tuple[int, list[str]]], name: str) -> list[str]:
@@ -208,23 +253,40 @@ def _head(rows: Iterator[tuple[int, list[str]]], name: str) -> list[str]:
         _refuse(name, line, "the first line holds numbers", "the names of the columns")
     if names[0].startswith("#"):
         _refuse(name, line, "the first line is a comment", "the names of the columns")
-    for mark, called in ((";", "semicolons"), ("\t", "tabs"), (" ", "spaces")):
-        if len(names) == 1 and mark in names[0]:
-            _refuse(name, line, f"the columns are separated by {called}", "by commas")
+    if len(names) == 1 and " " in names[0]:
+        expected = "by commas, semicolons or tabs"
+        _refuse(name, line, "the columns are separated by spaces", expected)
     return names
 
 
-def read_cells(cells: Sequence[str], first_row: int) -> tuple[FloatArray, list[TextCell]]:
-    """Return the numbers of a column, NaN for nothing or a text, and the texts."""
+def _units(
+    rows: Iterator[tuple[int, list[str]]], width: int
+) -> tuple[list[str], int | None, Iterator[tuple[int, list[str]]]]:
+    """Return the row of units, if there is such, its line, and the rows below."""
+    first = list(islice(rows, 1))
+    for line, cells in first:
+        units = [cell.strip().removeprefix("[").removesuffix("]").strip() for cell in cells]
+        texts = [cell for cell in cells if cell.strip().casefold() not in _NOTHING]
+        if texts and len(cells) == width and all(_number(cell) is None for cell in texts):
+            return ["" if unit in ("-", "1") else unit for unit in units], line, rows
+    return [""] * width, None, chain(first, rows)
+
+
+def read_cells(
+    cells: Sequence[str], first_row: int
+) -> tuple[FloatArray, list[TextCell], list[TextCell]]:
+    """Return the numbers of a column, NaN for nothing or a text; the texts; and the times."""
     with suppress(ValueError):  # the quick way, which most columns allow
-        return np.array([_float(cell) for cell in cells]), []
+        return np.array([_float(cell) for cell in cells]), [], []
     numbers = [_number(cell) for cell in cells]
-    texts = [
-        TextCell(row, cell.strip())
-        for row, (cell, number) in enumerate(zip(cells, numbers, strict=True), start=first_row)
-        if number is None
+    written = [TextCell(row, cell.strip()) for row, cell in enumerate(cells, start=first_row)]
+    texts = [cell for cell, number in zip(written, numbers, strict=True) if number is None]
+    times = [
+        cell
+        for cell, number in zip(written, numbers, strict=True)
+        if number is not None and _ISO_TIME.fullmatch(cell.text)
     ]
-    return np.array([math.nan if number is None else number for number in numbers]), texts
+    return np.array([math.nan if number is None else number for number in numbers]), texts, times
 
 
 def is_number(cell: str) -> bool:
@@ -237,6 +299,9 @@ def _number(cell: str) -> float | None:
     if cell.strip().casefold() in _NOTHING:
         return math.nan
     try:
+        if _ISO_TIME.fullmatch(cell):
+            time = datetime.fromisoformat(cell.strip())
+            return (time if time.tzinfo else time.replace(tzinfo=UTC)).timestamp()
         return _float(cell)
     except ValueError:
         return None
@@ -255,13 +320,16 @@ class _Filling:
     blocks: list[FloatArray] = field(default_factory=list)
     n_texts: int = 0
     texts: list[TextCell] = field(default_factory=list)
+    first_time: TextCell | None = None
 
     def add(self, cells: Sequence[str], first_row: int) -> None:
-        values, texts = read_cells(cells, first_row)
+        values, texts, times = read_cells(cells, first_row)
+        if self.first_time is None and times:
+            self.first_time = times[0]
         self.blocks.append(values)
         self.n_texts += len(texts)
         self.texts += texts[: MOST_ALIKE - len(self.texts)]
 
-    def column(self, name: str) -> RawColumn:
+    def column(self, name: str, unit: str) -> RawColumn:
         values = np.concatenate(self.blocks) if self.blocks else np.empty(0)
-        return RawColumn(name, values, self.n_texts, tuple(self.texts))
+        return RawColumn(name, values, self.n_texts, tuple(self.texts), self.first_time, unit)

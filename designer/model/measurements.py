@@ -27,12 +27,15 @@ class LogColumn:
         Our name for it, see `designer.measured.assign`; ``ignore`` or ``covariate`` for none.
     scale, offset : float
         From the log's numbers to ours, in the unit that our name ends in.
+    has_unit : bool
+        Whether the scale is said; else a row of units in the log tells it.
     """
 
     name: str
     target: str
     scale: float = 1.0
     offset: float = 0.0
+    has_unit: bool = False
 
 
 @dataclass(frozen=True, slots=True)

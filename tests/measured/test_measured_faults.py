@@ -28,8 +28,8 @@ def only(faults: list[Fault]) -> Fault:
         (b"a,b\n1,2\n\xe9,3\n", 3, "this is not text in UTF-8"),
         ("a,b\n1,2".encode("utf-16"), 1, "this is not text in UTF-8"),
         (b"1,2\n3,4\n", 1, "the first line holds numbers"),
-        (b"x_m;y_m\n1;2\n", 1, "the columns are separated by semicolons"),
-        (b"x_m\ty_m\n1\t2\n", 1, "the columns are separated by tabs"),
+        (b"x_m;y_m\n1,5;2.5\n", 2, "line 2 has a decimal comma, line 2 a decimal point"),
+        (b"x_m\ty_m\n1\t2.5\n3\t1,5\n", 3, "line 3 has a decimal comma, line 2 a decimal"),
         (b"x_m y_m\n1 2\n", 1, "the columns are separated by spaces"),
         (b"# a log\nx_m,y_m\n1,2\n", 1, "the first line is a comment"),
         (b"x_m,y_m\r1,2\r", 1, "the lines end with carriage returns alone"),
@@ -155,7 +155,7 @@ def test_names_that_stand_twice(log: Log) -> None:
 
 
 @pytest.mark.parametrize("name", ["time_s", "x_m", "length_3_m", "temperature_C", "battery"])
-@pytest.mark.parametrize("cell", ["abc", "1 m", "1.2.3", "n/a", "1_0"])
+@pytest.mark.parametrize("cell", ["abc", "1 m", "1.2.3", "2026-05-33 10:00", "1_0"])
 def test_text_in_a_numeric_column(log: Log, name: str, cell: str) -> None:
     for added in ("temperature_C", "battery"):
         log.add(added, [str(row) for row in range(30)])
@@ -163,14 +163,65 @@ def test_text_in_a_numeric_column(log: Log, name: str, cell: str) -> None:
     fault = only(log.faults())
     assert (fault.line, fault.field) == (8, name)
     assert fault.problem == f"row 7 has the text '{cell}'"
-    assert fault.expected == "a number, or nothing where there is none"
+    otherwise = "a time such as 2026-05-03T10:00:00.5Z" if name == "time_s" else "nothing"
+    assert fault.expected.startswith(f"a number, or {otherwise}")
 
 
-def test_a_row_of_units_is_told_once(log: Log) -> None:
-    log.rows.insert(0, ["s", "m", "m", "m", "m", "m", "m", "N", "N", "N"])
+@pytest.mark.parametrize(
+    ("unit", "expected"),
+    [
+        ("mm", "m, as its name says; or {to: x_m, unit: mm} in measurements.columns"),
+        ("wobbles", "a length such as '2 mm'"),
+        ("kg", "a length such as '2 mm'"),
+    ],
+)
+def test_a_row_of_units_against_the_names(log: Log, unit: str, expected: str) -> None:
+    log.rows.insert(0, ["[s]", unit, "m", "m", "m", "m", "m", "N", "N", "N"])
     fault = only(log.faults())
-    assert (fault.line, fault.problem) == (2, "row 1 holds texts, such as 's', in 10 columns")
-    assert "measurements.columns" in fault.expected
+    assert (fault.line, fault.field) == (2, "x_m")
+    assert fault.problem == f"the row of units says '{unit}'"
+    assert fault.expected.startswith(expected)
+
+
+def test_a_text_below_the_units(log: Log) -> None:
+    log.rows.insert(0, ["s", *["m"] * 6, *["N"] * 3])
+    log.set(4, "y_m", "abc")
+    fault = only(log.faults())
+    assert (fault.line, fault.problem) == (5, "row 3 has the text 'abc'")
+
+
+@pytest.mark.parametrize("unit", ["ms", "us", "ns"])
+def test_small_units_of_time_since_1970(log: Log, unit: str) -> None:
+    factor = {"ms": 10**3, "us": 10**6, "ns": 10**9}[unit]
+    for row in range(1, 31):
+        log.set(row, "time_s", (1_700_000_000 + 10 * row) * factor)
+    fault = only(log.faults())
+    assert (fault.line, fault.field) == (2, "time_s")
+    assert "seconds since 1970" in fault.problem
+    assert fault.expected.startswith(f"seconds, or {{to: time_s, unit: {unit}}}")
+
+
+def test_nanoseconds_from_the_start(log: Log) -> None:
+    for row in range(1, 31):
+        log.set(row, "time_s", row * 10**10)
+    fault = only(log.faults())
+    assert (fault.line, fault.field) == (1, "time_s")
+    assert fault.problem == "spans 2.9e+11 s, which is more than ten years"
+
+
+def test_a_date_that_is_no_reading(log: Log) -> None:
+    log.set(5, "tension_2_N", "2026-05-03T10:00:00")
+    fault = only(log.faults())
+    assert (fault.line, fault.field) == (6, "tension_2_N")
+    assert fault.problem == "row 5 has the time '2026-05-03T10:00:00'"
+
+
+def test_dates_out_of_order(log: Log) -> None:
+    for row in range(1, 31):
+        log.set(row, "time_s", f"2026-05-03 10:{59 - row}:00")
+    fault = log.faults()[0]
+    assert (fault.line, fault.field) == (3, "time_s")
+    assert fault.problem.startswith("row 2 has 2026-05-03T10:57:00Z, before row 1 with 2026-05-03T")
 
 
 @pytest.mark.parametrize("cell", ["3,25", "-1,276.4", "1,276,400"])

@@ -9,7 +9,15 @@ from pydantic import BeforeValidator, model_validator
 from designer.documents.fields import Text, bounded, mapping, refusal
 from designer.documents.section import Section, config_field
 from designer.measured.assign import COVARIATE, IGNORE, column_hint, dimension_of
-from designer.units import NUMBER, TEMPERATURE, Dimension, QuantityError, describe, read_quantity
+from designer.units import (
+    NUMBER,
+    TEMPERATURE,
+    Dimension,
+    QuantityError,
+    describe,
+    read_quantity,
+    unit_conversion,
+)
 
 _TARGET = f"a column of ours such as 'length_1_m', or '{IGNORE}', or '{COVARIATE}'"
 
@@ -78,13 +86,12 @@ class ColumnSection(Section):
         if self.unit is None:
             return 1.0 if self.scale is None else self.scale, 0.0
         try:
-            zero, unit_SI = (read_quantity(f"{number} {self.unit}", dimension) for number in (0, 1))
+            return unit_conversion(self.unit, dimension)
         except QuantityError as error:
             _, mark, hint = error.expected.partition("; did you mean")
             expected = f"a unit as in '{dimension.example}'" if dimension.unit else "none"
             problem = f"{describe(self.unit)} is no unit of {dimension.noun}"
             raise refusal(problem, f"{expected}{mark}{hint}") from None
-        return unit_SI - zero, zero
 
     def _offset(self, dimension: Dimension) -> float:
         # '5 K' as a difference is not 5 K as a temperature

@@ -270,7 +270,12 @@ class MeasurementsSection(Section):
             diameter_m=self.cable.diameter,
             minimum_breaking_load_N=self.cable.minimum_breaking_load,
             columns=tuple(
-                LogColumn(name, column.to, *column.conversion())
+                LogColumn(
+                    name,
+                    column.to,
+                    *column.conversion(),
+                    has_unit=column.unit is not None or column.scale is not None,
+                )
                 for name, column in self.columns.items()
             ),
             settled=self.settled,
