@@ -207,7 +207,7 @@ def _assign_mapped(
 
 
 def unit_faults(table: LogTable, column: RawColumn, hint: str = "") -> Iterator[Fault]:
-    """Yield the fault of a column of ours whose unit in the row of units is not that of its name."""
+    """Yield the fault of a column of ours whose unit in the file is not that of its name."""
     dimension = dimension_of(column.name) or NUMBER
     if not column.unit:
         return
