@@ -85,5 +85,7 @@ def diagnose(
     from designer.measured.read import read_measured
 
     if data is not None and study.measurements is not None:
-        study = replace(study, measurements=replace(study.measurements, file=Path(data)))
+        study = replace(
+            study, measurements=replace(study.measurements, file=Path(data), more_files=())
+        )
     return diagnose_study(study, read_measured(study), progress)

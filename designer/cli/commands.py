@@ -239,13 +239,14 @@ def diagnose(
     from designer.cli.tables import print_check, print_diagnosis
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out
     from designer.io.output import file_names, output_folder
+    from designer.measured.formats import is_bag
     from designer.measured.read import read_measured
 
     study, plugins = study_of(config, no_plugins)
     if data is not None and study.measurements is not None:
-        if not data.is_file():
+        if not data.is_file() and not is_bag(data):
             raise InputError.at("--data", f"there is no file {data}", "a CSV file")
-        study = replace(study, measurements=replace(study.measurements, file=data))
+        study = replace(study, measurements=replace(study.measurements, file=data, more_files=()))
     measured = read_measured(study)
     catalogue = None if checks else catalogue_of(study, plugins)
     announce_compiling()

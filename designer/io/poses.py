@@ -13,7 +13,8 @@ from designer.documents.bounds import BOUNDS
 from designer.documents.opened import open_input, reason
 from designer.errors import Fault, InputError
 from designer.measured.assign import POSITION, ROTATION_VECTOR, unit_faults
-from designer.measured.table import LogTable, RawColumn, read_table
+from designer.measured.formats import read_table
+from designer.measured.table import LogTable, RawColumn
 from designer.model.robot import Poses, Robot
 
 _OFF_PLANE = 1e-6

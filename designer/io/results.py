@@ -76,7 +76,9 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None
         text = decode(read_input(source), str(source))
     text = moved_to(folder, text, document_of(text.encode(), str(source)), source.parent)
     # The data are not always those that the config names.
-    places: dict[tuple[str, ...], str] = {("file",): scalar(path_from(folder, measured.file))}
+    files = [scalar(path_from(folder, path)) for path in measured.files]
+    file = files[0] if len(files) == 1 else f"[{', '.join(files)}]"
+    places: dict[tuple[str, ...], str] = {("file",): file}
     if noise := _estimated_noise(diagnosis):
         places |= {("noise", kind): str(size) for kind, size in noise.items()}
         places["noise", "estimated"] = f"[{', '.join(noise)}]"
@@ -91,7 +93,7 @@ def _origin(diagnosis: Diagnosis) -> str:
     measured = diagnosis.study.measurements
     assert measured is not None
     lines = [
-        f"From the diagnosis of {measured.file.name}, SHA-256 {diagnosis.measured.sha256[:16]}"
+        f"From the diagnosis of {measured.file_names}, SHA-256 {diagnosis.measured.sha256[:16]}"
     ]
     for kind, *errors in diagnosis.errors:
         was, now = (kind.scale * error.heldout.value for error in errors)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from designer.errors import Fault
@@ -149,21 +149,41 @@ class Assigned:
         return next((rotation_form(name) for name in self.ours if is_rotation(name)), ())
 
 
-def assign(table: LogTable, study: Study, measurements: Measurements) -> Assigned:
-    """Return the table with its columns assigned by the config's map and by their names."""
-    assigned = Assigned(table)
-    named: dict[str, RawColumn] = {}
-    for place, column in enumerate(table.columns, start=1):
-        if column.name:
-            named.setdefault(column.name, column)
-        elif not column.is_empty:
-            assigned.notes.append(f"column {place} has no name and was left out")
-    for entry in measurements.columns:
-        _assign_mapped(assigned, named, entry, study)
-    mapped = {entry.name for entry in measurements.columns}
-    for column in named.values():
-        if column.name not in mapped:
-            _assign_by_name(assigned, column, study)
+def assign(
+    tables: Sequence[LogTable], study: Study, measurements: Measurements
+) -> tuple[Assigned, ...]:
+    """Return each table with its columns assigned by the config's map and by their names."""
+    parts = tuple(Assigned(table) for table in tables)
+    mapped = {entry.name: entry for entry in measurements.columns}
+    present: dict[str, RawColumn] = {}
+    for part in parts:
+        named: dict[str, RawColumn] = {}
+        for place, column in enumerate(part.table.columns, start=1):
+            if column.name:
+                named.setdefault(column.name, column)
+            elif not column.is_empty:
+                part.notes.append(f"column {place} has no name and was left out")
+        present |= named
+        for name, entry in mapped.items():
+            if name in named:
+                _assign_mapped(part, named[name], entry)
+        for name, column in named.items():
+            if name not in mapped:
+                _assign_by_name(part, column, study)
+    for name, entry in reversed(mapped.items()):
+        if name not in present:
+            parts[0].awaited.add(entry.target)
+            problem = f"there is no such column in {' or '.join(table.name for table in tables)}"
+            expected = f"a name in its first line{did_you_mean(name, present)}"
+            parts[0].faults.insert(0, study.source.fault(f"{_MAP}.{name}", problem, expected))
+    return parts
+
+
+def complete(assigned: Assigned, study: Study, measurements: Measurements) -> None:
+    """Set aside columns that a log without poses or with half a wind has, and tell what is missing.
+
+    The table has the columns of all files.
+    """
     # Take a wind without its horizontal components as covariates.
     present = [name for name in WIND if name in assigned.ours]
     missing = [name for name in WIND[:2] if name not in assigned.ours]
@@ -180,19 +200,10 @@ def assign(table: LogTable, study: Study, measurements: Measurements) -> Assigne
         if names:
             assigned.notes.append(f"{', '.join(names)} left out: poses are said to be unknown")
     assigned.faults.extend(_missing(assigned, study, has_poses=measurements.has_poses))
-    return assigned
 
 
-def _assign_mapped(
-    assigned: Assigned, named: dict[str, RawColumn], entry: LogColumn, study: Study
-) -> None:
-    column = named.get(entry.name)
-    if column is None:
-        assigned.awaited.add(entry.target)
-        problem = f"there is no such column in {assigned.table.name}"
-        expected = f"a name in its first line{did_you_mean(entry.name, named)}"
-        assigned.faults.append(study.source.fault(f"{_MAP}.{entry.name}", problem, expected))
-    elif entry.target == COVARIATE:
+def _assign_mapped(assigned: Assigned, column: RawColumn, entry: LogColumn) -> None:
+    if entry.target == COVARIATE:
         assigned.covariates[entry.name] = column
     elif entry.target != IGNORE:
         values = column.values

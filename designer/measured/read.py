@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -19,9 +20,12 @@ from designer.measured.assign import (
     WIND,
     Assigned,
     assign,
+    complete,
     length_names,
     tension_names,
 )
+from designer.measured.formats import is_bag, read_bag, read_table
+from designer.measured.join import joined
 from designer.measured.rows import (
     EPOCH_S,
     Rows,
@@ -32,7 +36,7 @@ from designer.measured.rows import (
     utc,
 )
 from designer.measured.sense import sense_faults, unit_faults
-from designer.measured.table import LogTable, read_table
+from designer.measured.table import LogTable
 from designer.model.measured_data import Measured
 from designer.model.measurements import Measurements
 from designer.model.robot import Poses, Robot
@@ -58,12 +62,17 @@ def read_measured(study: Study) -> Measured:
     if measurements is None:
         expected = "a mapping with the file of measured data and the cable on the machine"
         raise InputError([study.source.fault("measurements", "is missing", expected)])
-    table = _table(study, measurements)
+    tables = [table for path in measurements.files for table in _tables(path, study, measurements)]
     with np.errstate(over="ignore", invalid="ignore"):  # numbers without bounds become faults
-        assigned = assign(table, study, measurements)
+        parts = assign(tables, study, measurements)
+        wrong_cells = [fault for part in parts for fault in cell_faults(part)]
+        assigned = joined(parts, settled=measurements.settled)
+        complete(assigned, study, measurements)
         rows = usable_rows(assigned, study.robot.n_cables, settled=measurements.settled)
-        faults = [*assigned.table.faults, *assigned.faults, *cell_faults(assigned), *rows.faults]
+        faults = [*assigned.table.faults, *assigned.faults, *wrong_cells]
+        faults += rows.faults if len(parts) == 1 or not faults else []
         _refuse([*faults, *quaternion_faults(assigned, rows.kept)])
+    table = assigned.table
     rows = thinned(rows, settled=measurements.settled)
     if measurements.has_poses:
         poses = _poses(assigned, rows.kept, is_point_mass=study.robot.is_point_mass)
@@ -92,8 +101,10 @@ def _refuse(faults: list[Fault]) -> None:
         raise InputError(faults[:MOST_FAULTS])
 
 
-def _table(study: Study, measurements: Measurements) -> LogTable:
-    path = measurements.file
+def _tables(path: Path, study: Study, measurements: Measurements) -> list[LogTable]:
+    """Return the table in a file, or those in a bag."""
+    if is_bag(path):
+        return read_bag(path, [column.name for column in measurements.columns])
     try:
         file = open_input(path)
     except FileNotFoundError:
@@ -102,7 +113,7 @@ def _table(study: Study, measurements: Measurements) -> LogTable:
         problem = f"{path} cannot be read: {reason(error)}"
     else:
         with file:
-            return read_table(file, str(path))
+            return [read_table(file, str(path))]
     expected = "a CSV file, relative to this file"
     raise InputError([study.source.fault("measurements.file", problem, expected)])
 

@@ -120,7 +120,7 @@ def usable_rows(assigned: assign.Assigned, n_cables: int, *, settled: bool) -> R
         if left_out.any()
     ]
     if time := assigned.ours.get(assign.TIME_NAME):
-        faults += _time_faults(assigned.table, time, is_usable, settled=settled)
+        faults += time_faults(assigned.table, time, is_usable, settled=settled)
     if is_usable.sum() < FEWEST_ROWS:
         total = assigned.table.n_rows
         problem = f"{is_usable.sum()} of {total} rows have a pose and a reading"
@@ -184,9 +184,10 @@ def _with_pose(assigned: assign.Assigned) -> tuple[BoolArray, list[Fault]]:
     return has_pose, faults + table.first_few(halves, len(places), "missing values")
 
 
-def _time_faults(
+def time_faults(
     table: LogTable, time: RawColumn, mask: BoolArray, *, settled: bool
 ) -> Iterator[Fault]:
+    """Yield rows without their time, another unit than seconds, and rows out of order."""
     if not (time.is_empty or time.n_texts):
         rows = np.flatnonzero(np.isnan(time.values) & mask)
         expected = "a time in each row, or in none"

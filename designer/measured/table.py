@@ -7,7 +7,6 @@ then. A row below the head without any number holds the columns' units.
 from __future__ import annotations
 
 import csv
-import hashlib
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -15,7 +14,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from itertools import chain, islice
-from typing import BinaryIO, NamedTuple, NoReturn
+from typing import BinaryIO, NamedTuple, NoReturn, TypeAlias
 
 import numpy as np
 
@@ -34,6 +33,10 @@ MOST_ALIKE = 20
 """How many faults of one kind are told one by one; nobody reads more."""
 
 _NOTHING = frozenset({"", "nan", "-nan", "na", "n/a", "#n/a", "null", "none", "-"})
+
+
+Rows: TypeAlias = Iterator[tuple[int, list[str]]]
+"""Rows that are not blank, each with the line where it starts, from 1; 0 where there are none."""
 
 
 class TextCell(NamedTuple):
@@ -93,13 +96,15 @@ class LogTable:
     columns : tuple of RawColumn
         In the order of the file.
     lines : array (n_rows,)
-        Line of each row in the file, from 1.
+        Line of each row in the file, from 1; zeros where it has no lines.
     faults : tuple of Fault
         Rows of another width, which are left out, and names that stand twice.
     sha256 : str
         Digest of the file's bytes.
     units_line : int or None
         Line of the row of units.
+    head_line : int or None
+        Line of the names; None where the file has no lines.
     """
 
     name: str
@@ -108,6 +113,7 @@ class LogTable:
     faults: tuple[Fault, ...] = ()
     sha256: str = ""
     units_line: int | None = None
+    head_line: int | None = 1
 
     @property
     def n_rows(self) -> int:
@@ -116,7 +122,7 @@ class LogTable:
 
     def fault(self, row: int | None, column: str, problem: str, expected: str = "") -> Fault:
         """Return a fault in a row, counted from 0; in the head for None."""
-        line = 1 if row is None else int(self.lines[row])
+        line = self.head_line if row is None else int(self.lines[row]) or None
         place = "" if row is None else f"row {row + 1} "
         return Fault(self.name, line, column, f"{place}{problem}", expected)
 
@@ -130,17 +136,26 @@ class LogTable:
         return shortlist
 
 
-def read_table(file: BinaryIO, name: str) -> LogTable:
-    """Return the table in an open file, which messages call ``name``.
+def text_rows(file: BinaryIO, name: str, see: Callable[[bytes], None]) -> Rows:
+    """Yield the rows of a text, whose bytes `see` is given.
 
     Raises
     ------
     InputError
-        If it is too large, is no text in UTF-8, is empty, has no head, or is no CSV.
+        If it is too large, is no text in UTF-8, or is no CSV.
     """
-    digest = hashlib.sha256()
-    rows = _rows(_lines(file, name, digest.update), name)
-    names = _head(rows, name)
+    return _rows(_lines(file, name, see), name)
+
+
+def table_of(rows: Rows, name: str) -> LogTable:
+    """Return the table of such rows, names of columns first; messages call the file ``name``.
+
+    Raises
+    ------
+    InputError
+        If it is empty or has no head.
+    """
+    head_line, names = _head(rows, name)
     units, units_line, rows = _units(rows, len(names))
     columns = [_Filling() for _ in names]
     lines: list[int] = []
@@ -160,7 +175,11 @@ def read_table(file: BinaryIO, name: str) -> LogTable:
         for head, column in zip(zip(names, units, strict=True), columns, strict=True)
     )
     table = LogTable(
-        name, filled_columns, np.array(lines, dtype=np.int64), (), digest.hexdigest(), units_line
+        name,
+        filled_columns,
+        np.array(lines, dtype=np.int64),
+        units_line=units_line,
+        head_line=head_line,
     )
     expected = f"{len(names)}, as the first line has names"
     of_another_width = (
@@ -178,7 +197,8 @@ def read_table(file: BinaryIO, name: str) -> LogTable:
     return replace(table, faults=(*repeated, *faults))
 
 
-def _refuse(name: str, line: int | None, problem: str, expected: str = _EXPECTED) -> NoReturn:
+def refuse(name: str, line: int | None, problem: str, expected: str = _EXPECTED) -> NoReturn:
+    """Raise what is wrong with a file as a whole, or at a line."""
     raise InputError.at(name, problem, expected, line=line)
 
 
@@ -189,20 +209,20 @@ def _lines(file: BinaryIO, name: str, see: Callable[[bytes], None]) -> Iterator[
         size += len(raw)
         if size > LARGEST_FILE_BYTES:
             limit = f"at most {LARGEST_FILE_BYTES / 1e6:g} MB"
-            _refuse(name, None, "the file is too large", limit)
+            refuse(name, None, "the file is too large", limit)
         see(raw)
         try:
             text = raw.decode("utf-8-sig" if number == 1 else "utf-8")
         except UnicodeDecodeError:
-            _refuse(name, number, "this is not text in UTF-8")
+            refuse(name, number, "this is not text in UTF-8")
         if _CONTROL_CODE.search(text):
-            _refuse(name, number, "this is a binary file")
+            refuse(name, number, "this is a binary file")
         if len(raw) == _LONGEST_LINE_BYTES:
-            _refuse(name, number, "this line is too long")
+            refuse(name, number, "this line is too long")
         yield text
 
 
-def _rows(lines: Iterator[str], name: str) -> Iterator[tuple[int, list[str]]]:
+def _rows(lines: Iterator[str], name: str) -> Rows:
     """Yield each row that is not blank, with the line where it starts."""
     head: list[str] = []
     for text in lines:
@@ -223,14 +243,14 @@ def _rows(lines: Iterator[str], name: str) -> Iterator[tuple[int, list[str]]]:
         except csv.Error as error:
             if str(error).startswith("new-line character"):
                 expected = "line feeds, as text files have now"
-                _refuse(name, line, "the lines end with carriage returns alone", expected)
-            _refuse(name, line, f"this is not valid CSV: {error}")
+                refuse(name, line, "the lines end with carriage returns alone", expected)
+            refuse(name, line, f"this is not valid CSV: {error}")
         if delimiter != ",":
             cells = [_with_point(cell, line, decimals) for cell in cells]
         if len(decimals) > 1:
             comma, point = decimals[","], decimals["."]
             problem = f"line {comma} has a decimal comma, line {point} a decimal point"
-            _refuse(name, line, problem, "one of them in the whole file")
+            refuse(name, line, problem, "one of them in the whole file")
         if len(cells) > 1 or "".join(cells).strip():
             yield line, cells
 
@@ -244,31 +264,29 @@ def _with_point(cell: str, line: int, decimals: dict[str, int]) -> str:
     return cell.replace(",", ".")
 
 
-def _head(rows: Iterator[tuple[int, list[str]]], name: str) -> list[str]:
+def _head(rows: Rows, name: str) -> tuple[int | None, list[str]]:
     line, cells = next(rows, (1, []))
     names = [cell.strip() for cell in cells]
     if not names:
-        _refuse(name, None, "the file is empty")
+        refuse(name, None, "the file is empty")
     if all(is_number(cell) for cell in names):
-        _refuse(name, line, "the first line holds numbers", "the names of the columns")
+        refuse(name, line, "the first line holds numbers", "the names of the columns")
     if names[0].startswith("#"):
-        _refuse(name, line, "the first line is a comment", "the names of the columns")
+        refuse(name, line, "the first line is a comment", "the names of the columns")
     if len(names) == 1 and " " in names[0]:
         expected = "by commas, semicolons or tabs"
-        _refuse(name, line, "the columns are separated by spaces", expected)
-    return names
+        refuse(name, line, "the columns are separated by spaces", expected)
+    return line or None, names
 
 
-def _units(
-    rows: Iterator[tuple[int, list[str]]], width: int
-) -> tuple[list[str], int | None, Iterator[tuple[int, list[str]]]]:
+def _units(rows: Rows, width: int) -> tuple[list[str], int | None, Rows]:
     """Return the row of units, if there is such, its line, and the rows below."""
     first = list(islice(rows, 1))
     for line, cells in first:
         units = [cell.strip().removeprefix("[").removesuffix("]").strip() for cell in cells]
         texts = [cell for cell in cells if cell.strip().casefold() not in _NOTHING]
         if texts and len(cells) == width and all(_number(cell) is None for cell in texts):
-            return ["" if unit in ("-", "1") else unit for unit in units], line, rows
+            return ["" if unit in ("-", "1") else unit for unit in units], line or None, rows
     return [""] * width, None, chain(first, rows)
 
 

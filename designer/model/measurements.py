@@ -46,6 +46,8 @@ class Measurements(checked.Value):
     ----------
     file : Path
         Table of measured poses, lengths and tensions.
+    more_files : tuple of Path
+        Tables of the same rows at other times, which are joined to it.
     linear_density_kg_per_m : float
         Mass per length of the cable on the machine [kg/m].
     axial_stiffness_N : float
@@ -82,6 +84,17 @@ class Measurements(checked.Value):
     minimum_breaking_load_N: checked.Positive | None = None
     estimated_noise: tuple[Reading, ...] = ()
     search_time_s: checked.NotNegative = 600.0
+    more_files: tuple[Path, ...] = ()
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All tables."""
+        return (self.file, *self.more_files)
+
+    @property
+    def file_names(self) -> str:
+        """What the tables are called, without their folders."""
+        return ", ".join(path.name for path in self.files)
 
     def cable(self, allowable_tension_N: float = math.inf) -> Cable:
         """Return the cable on the machine; its diameter is NaN where it is not given."""

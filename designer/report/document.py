@@ -163,7 +163,9 @@ def _digests(study: Study, catalogue: Catalogue | None) -> Iterator[tuple[str, s
             yield f"grades {source.name}", source.sha256
     if study.measurements is not None:
         with suppress(OSError):  # a design needs no data, so they may be gone
-            yield "measured data", sha256(read_input(study.measurements.file)).hexdigest()
+            for path in study.measurements.files:
+                name = f" {path.name}" if study.measurements.more_files else ""
+                yield f"measured data{name}", sha256(read_input(path)).hexdigest()
 
 
 def _data_uri(path: Path) -> str:

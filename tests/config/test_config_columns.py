@@ -71,7 +71,7 @@ def test_orientations_of_a_body(study_of: StudyOf, entry: str, target: str, scal
     found = study_of(BODY + measurements(f"{{r: {entry}}}")).measurements
     assert found is not None
     (column,) = found.columns
-    assert column == LogColumn("r", target, pytest.approx(scale), 0.0)
+    assert column == LogColumn("r", target, pytest.approx(scale), 0.0, has_unit="unit" in entry)
 
 
 def test_entries_show_what_becomes_of_a_reading(valid: str, study_of: StudyOf) -> None:

@@ -133,7 +133,7 @@ def test_measurements(valid: str, study_of: StudyOf, tmp_path: Path) -> None:
     assert measurements.axial_stiffness_N == pytest.approx(3.3e6)
     assert measurements.settled is False
     assert measurements.unknown == ("length_offset",)
-    assert measurements.columns == (LogColumn("L1", "length_1_m", 1e-3, 0.0),)
+    assert measurements.columns == (LogColumn("L1", "length_1_m", 1e-3, 0.0, has_unit=True),)
     assert measurements.length_noise_m == pytest.approx(0.001)
     assert measurements.tension_noise_N is None
     assert measurements.search_time_s == 120.0

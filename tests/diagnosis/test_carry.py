@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -100,6 +101,29 @@ def test_it_names_the_files_from_where_it_lies(tmp_path) -> None:
     assert yaml.safe_load(text)["measurements"]["file"] == "../new.csv"
     assert yaml.safe_load(text)["document"]["logo"] == "../logo.svg"
     assert text.startswith(f"# yaml-language-server: $schema=../{SCHEMA_FILE}\n")
+
+
+@pytest.mark.parametrize(
+    "files", ["[measured.csv, air.csv]", "\n    - measured.csv\n    - air.csv"]
+)
+def test_it_names_all_files_of_a_log(files, tmp_path) -> None:
+    path = make(YARD3, rows=32).write(tmp_path)
+    times = [row.split(",")[0] for row in (tmp_path / "measured.csv").read_text().splitlines()]
+    assert times[0] == "time_s"
+    rows = [f"{time},{k % 7}\n" for k, time in enumerate(times[1:])]
+    (tmp_path / "air.csv").write_text("".join(["time_s,humidity\n", *rows]))
+    text = path.read_text(encoding="utf-8")
+    path.write_text(re.sub(r"file: .*", lambda _: f"file: {files}", text), encoding="utf-8")
+    study = read_study(path)
+    case = case_of(study, study.measurements, read_measured(study))
+    assert case.measured.covariates.keys() == {"humidity"}
+    target = tmp_path / "out" / "config.diagnosed.yaml"
+    target.parent.mkdir()
+    target.write_text(diagnosed_config(diagnose(replace(case, candidates=())), target.parent))
+    assert [path.resolve() for path in read_study(target).measurements.files] == [
+        tmp_path / "measured.csv",
+        tmp_path / "air.csv",
+    ]
 
 
 def test_what_is_unknown_stays_so_and_is_fitted_again(tmp_path) -> None:

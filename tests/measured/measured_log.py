@@ -99,8 +99,8 @@ class Log:
         self.path.write_bytes(self.text().encode() if raw is None else raw)
         return self.read_config()
 
-    def read_config(self) -> Measured:
-        """Write the config alone and read what it names."""
+    def write_config(self) -> None:
+        """Write the config alone."""
         self.config.write_text(
             self.robot
             + "cable: {density: 7800, youngs_modulus: 200 GPa, allowable_stress: 180 MPa}\n"
@@ -108,7 +108,15 @@ class Log:
             f"  columns: {self.columns}\n  settled: {str(self.settled).lower()}\n",
             encoding="utf-8",
         )
+
+    def read_config_as_it_is(self) -> Measured:
+        """Read what the config names."""
         return read_measured(read_study(self.config))
+
+    def read_config(self) -> Measured:
+        """Write the config alone and read what it names."""
+        self.write_config()
+        return self.read_config_as_it_is()
 
     def faults(self, raw: bytes | None = None) -> list[Fault]:
         """Return all faults."""

@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
-from measured_log import Log
+import importlib
+from datetime import datetime, timedelta
+from pathlib import Path
+from typing import Any
 
+import numpy as np
+import pyarrow as pa
+import pytest
+from measured_log import COLUMNS_LINE, Log
+from openpyxl import Workbook
+from pyarrow import parquet
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_typestore
+
+from designer.errors import Fault, InputError
 from designer.model.measured_data import Measured
 
 
@@ -91,3 +102,265 @@ def test_other_times_are_no_covariate(log: Log) -> None:
     found = log.read()
     assert found.covariates == {}
     assert found.notes == ("left out, since they hold times: written",)
+
+
+START = datetime(2026, 5, 3, 10)
+
+
+def cells(log: Log) -> dict[str, list[Any]]:
+    """Return the columns of a log, the times as such."""
+    values: dict[str, list[Any]] = {name: list(log.numbers(name)) for name in log.names}
+    values["time_s"] = [START + timedelta(seconds=time) for time in values["time_s"]]
+    return values
+
+
+def read_as(log: Log, name: str, more: str = "") -> Measured:
+    """Return what a config finds that names such files."""
+    log.config.write_text(log.config.read_text().replace("log.csv", f"{name}{more}"))
+    return log.read_config_as_it_is()
+
+
+def faults_as(log: Log, name: str) -> list[Fault]:
+    with pytest.raises(InputError) as caught:
+        read_as(log, name)
+    return list(caught.value.faults)
+
+
+def write_workbook(
+    path: Path, columns: dict[str, list[Any]], units: list[str] | None = None
+) -> None:
+    book = Workbook()
+    sheet = book.active
+    assert sheet is not None
+    sheet.append([])  # the table begins in the third row
+    sheet.append([None])
+    sheet.append(list(columns))
+    if units:
+        sheet.append(units)
+    for row in zip(*columns.values(), strict=True):
+        sheet.append(row)
+    book.save(path)
+
+
+def test_excel(log: Log) -> None:
+    before = log.read()
+    write_workbook(log.folder / "log.xlsx", cells(log), ["", *["m"] * 6, *["N"] * 3])
+    found = read_as(log, "log.xlsx")
+    same(found, before)
+    assert found.notes == ("time_s is counted from 2026-05-03T10:00:00Z",)
+    assert len(found.sha256) == 64
+
+
+def test_a_text_in_excel_has_its_row(log: Log) -> None:
+    log.read()
+    columns = cells(log)
+    columns["y_m"][4] = "abc"
+    columns["z_m"][5] = None
+    write_workbook(log.folder / "log.xlsx", columns)
+    text, half = faults_as(log, "log.xlsx")
+    assert (text.line, text.field, text.problem) == (8, "y_m", "row 5 has the text 'abc'")
+    assert (half.line, half.field) == (9, "z_m")
+
+
+@pytest.mark.parametrize("unit", ["us", "ns"])
+def test_parquet(log: Log, unit: str) -> None:
+    before = log.read()
+    columns = cells(log)
+    columns["length_2_m"][3] = None
+    table = pa.table({**columns, "time_s": pa.array(columns["time_s"], pa.timestamp(unit))})
+    parquet.write_table(table, log.folder / "log.parquet")
+    found = read_as(log, "log.parquet")
+    assert np.isnan(found.length_m[3, 1])
+    np.testing.assert_array_equal(found.tension_N, before.tension_N)
+    np.testing.assert_array_equal(found.time_s, before.time_s)
+
+
+def test_a_text_in_parquet_has_its_row(log: Log) -> None:
+    log.read()
+    columns = {name: list(map(str, values)) for name, values in cells(log).items()}
+    columns["y_m"][4] = "abc"
+    parquet.write_table(pa.table(columns), log.folder / "log.parquet")
+    (fault,) = faults_as(log, "log.parquet")
+    assert (fault.line, fault.field, fault.problem) == (None, "y_m", "row 5 has the text 'abc'")
+
+
+@pytest.mark.parametrize("start", [b"PAR1", b"PK\x03\x04"])
+def test_damaged_binary_files(log: Log, start: bytes) -> None:
+    (fault,) = log.faults(start + bytes(300))
+    assert fault.line is None
+    assert "that can be read" in fault.problem
+
+
+@pytest.mark.parametrize("start", [b"PAR1", b"PK\x03\x04"])
+def test_a_library_that_is_missing(log: Log, start: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(name: str) -> None:
+        raise ImportError(name)
+
+    monkeypatch.setattr(importlib, "import_module", missing)
+    (fault,) = log.faults(start)
+    assert "which reads such, is missing" in fault.problem
+    assert fault.expected.startswith("pip install 'cdpr-designer[")
+
+
+def split(log: Log, lag_s: float = 0.0) -> None:
+    """Write the poses and the lengths into two files."""
+    log.read()
+    for name, names in (("poses", log.names[1:4]), ("winches", log.names[4:])):
+        shift_s = lag_s if name == "winches" else 0.0
+        rows = [
+            [f"{float(row[0]) + shift_s}", *(row[log.names.index(each)] for each in names)]
+            for row in log.rows
+        ]
+        text = "".join(",".join(row) + "\n" for row in (["time_s", *names], *rows))
+        (log.folder / f"{name}.csv").write_text(text)
+
+
+@pytest.mark.parametrize("files", ["[poses.csv, winches.csv]", "[winches.csv, poses.csv]"])
+@pytest.mark.parametrize("settled", [True, False])
+def test_two_files_are_joined_by_time(log: Log, files: str, settled: bool) -> None:
+    log.settled = settled
+    before = log.read()
+    split(log)
+    found = read_as(log, files)
+    same(found, before)
+    (note,) = found.notes
+    assert "winches.csv joined by time, each row with its " in note
+    assert ("nearest sample" in note) == settled
+
+
+def test_a_motion_takes_the_straight_line_and_rest_the_nearest_sample(log: Log) -> None:
+    before = log.read()
+    split(log, lag_s=2.5)
+    at_rest = read_as(log, "[poses.csv, winches.csv]")
+    np.testing.assert_array_equal(at_rest.length_m, before.length_m)
+    log.settled = False
+    split(log, lag_s=2.5)
+    moving = read_as(log, "[poses.csv, winches.csv]")
+    expected = 0.25 * before.length_m[:-1] + 0.75 * before.length_m[1:]
+    np.testing.assert_allclose(moving.length_m, expected)
+    assert moving.row_numbers.tolist() == list(range(2, 31))
+
+
+def test_a_row_whose_reading_was_not_written_has_none(log: Log) -> None:
+    split(log)
+    path = log.folder / "winches.csv"
+    lines = path.read_text().splitlines(keepends=True)
+    path.write_text("".join(lines[:9] + lines[10:]))
+    found = read_as(log, "[poses.csv, winches.csv]")
+    assert 9 not in found.row_numbers
+    assert found.n_rows == 29
+
+
+def test_names_that_two_files_share(log: Log) -> None:
+    split(log)
+    for name in ("poses", "winches"):
+        path = log.folder / f"{name}.csv"
+        head, *rows = path.read_text().splitlines()
+        rows = [f"{row},{k % 7}" for k, row in enumerate(rows)]
+        path.write_text("\n".join([f"{head},status", *rows]))
+    assert read_as(log, "[poses.csv, winches.csv]").covariates.keys() == {
+        "status",
+        "winches.status",
+    }
+
+
+def spoil(log: Log, name: str, old: str, new: str) -> None:
+    path = log.folder / f"{name}.csv"
+    path.write_text(path.read_text().replace(old, new, 1))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "field", "problem"),
+    [
+        ("time_s", "t", 1, "time_s", "is missing, and joins the files"),
+        ("\n30.0,", "\n5.0,", 5, "time_s", "row 4 has 5 s, before row 3 with 20 s"),
+        ("\n30.0,", "\nabc,", 5, "time_s", "row 4 has the text 'abc'"),
+        ("length_2_m", "x_m", 1, "x_m", "{folder}/poses.csv has x_m as well"),
+    ],
+)
+def test_faults_of_a_second_file_have_its_line(
+    log: Log, old: str, new: str, line: int, field: str, problem: str
+) -> None:
+    split(log)
+    spoil(log, "winches", old, new)
+    fault = faults_as(log, "[poses.csv, winches.csv]")[0]
+    assert (fault.file, fault.line, fault.field) == (str(log.folder / "winches.csv"), line, field)
+    assert fault.problem == problem.format(folder=log.folder)
+
+
+def test_files_of_two_clocks(log: Log) -> None:
+    split(log, lag_s=1.7e9)
+    (fault,) = faults_as(log, "[poses.csv, winches.csv]")
+    assert (fault.field, fault.expected) == ("time_s", "times of one clock in all files")
+
+
+def test_a_second_file_that_is_not_there(log: Log) -> None:
+    split(log)
+    (fault,) = faults_as(log, "[poses.csv, nowhere.csv]")
+    assert (fault.file, fault.field) == (str(log.config), "measurements.file")
+    assert "nowhere.csv" in fault.problem
+
+
+def write_bag(log: Log, *, plugin: StoragePlugin = StoragePlugin.MCAP) -> Path:
+    """Write the log as a bag of two topics, the winches twice as often as the poses."""
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    types = store.types
+    path = log.folder / "run"
+    pose_type, joint_type = "geometry_msgs/msg/PointStamped", "sensor_msgs/msg/JointState"
+    with Writer(path, version=9, storage_plugin=plugin) as writer:
+        poses = writer.add_connection("/camera", pose_type, typestore=store)
+        winches = writer.add_connection("/winches", joint_type, typestore=store)
+        texts = writer.add_connection("/log", "std_msgs/msg/String", typestore=store)
+        for row in range(len(log.rows)):
+            stamp_ns = 1_700_000_000_000_000_000 + 10_000_000_000 * row
+            time = types["builtin_interfaces/msg/Time"](stamp_ns // 10**9, stamp_ns % 10**9)
+            header = types["std_msgs/msg/Header"](time, "base")
+            numbers = {name: float(log.cell(row + 1, name)) for name in log.names}
+            point = types["geometry_msgs/msg/Point"](*(numbers[f"{axis}_m"] for axis in "xyz"))
+            message: Any = types[pose_type](header, point)
+            late_ns = stamp_ns + 3_000_000_000  # recorded late, measured at its stamp
+            writer.write(poses, late_ns, store.serialize_cdr(message, pose_type))
+            text = types["std_msgs/msg/String"]("hello")
+            writer.write(texts, late_ns, store.serialize_cdr(text, "std_msgs/msg/String"))
+            lengths, tensions = (
+                np.array([numbers[f"{kind}_{cable}_{unit}"] for cable in (1, 2, 3)])
+                for kind, unit in (("length", "m"), ("tension", "N"))
+            )
+            message = types[joint_type](header, [], lengths, np.zeros(0), tensions)
+            writer.write(winches, late_ns, store.serialize_cdr(message, joint_type))
+    return path
+
+
+BAG_COLUMNS = ", ".join(
+    [
+        *(f"/camera.point.{axis}: {axis}_m" for axis in "xyz"),
+        *(f"'/winches.position[{cable - 1}]': length_{cable}_m" for cable in (1, 2, 3)),
+        *(f"'/winches.effort[{cable - 1}]': tension_{cable}_N" for cable in (1, 2, 3)),
+    ]
+)
+
+
+@pytest.mark.parametrize("plugin", list(StoragePlugin))
+def test_a_bag_of_ros(log: Log, plugin: StoragePlugin) -> None:
+    log.columns = f"{{{BAG_COLUMNS}}}"
+    before = Log(log.folder).read()
+    write_bag(log, plugin=plugin)
+    log.write_config()
+    found = read_as(log, "run")
+    same(found, before)
+    assert found.notes[-1] == "time_s is counted from 2023-11-14T22:13:20Z"
+
+
+def test_faults_of_a_bag(log: Log) -> None:
+    log.read()
+    path = write_bag(log)
+    (fault,) = faults_as(log, "run")
+    assert fault.problem == "none of its topics is used: /camera, /log, /winches"
+    log.columns = f"{{{BAG_COLUMNS.replace('point.x', 'point.q')}}}"
+    log.write_config()
+    fault = faults_as(log, "run")[0]
+    assert (fault.file, fault.line) == (str(log.config), COLUMNS_LINE)
+    assert "did you mean '/camera.point." in fault.expected
+    next(path.glob("*.mcap")).write_bytes(b"nothing")
+    (fault,) = faults_as(log, "run")
+    assert fault.problem.startswith("this is no bag that can be read: ")

@@ -24,7 +24,7 @@ def only(faults: list[Fault]) -> Fault:
         (b"", None, "the file is empty"),
         (b"\n\n  \n", None, "the file is empty"),
         (b"a,b\n\x00\x01", 2, "this is a binary file"),
-        (b"PK\x03\x04", 1, "this is a binary file"),
+        (b"PK\x03\x04", None, "this is no Excel workbook that can be read"),
         (b"a,b\n1,2\n\xe9,3\n", 3, "this is not text in UTF-8"),
         ("a,b\n1,2".encode("utf-16"), 1, "this is not text in UTF-8"),
         (b"1,2\n3,4\n", 1, "the first line holds numbers"),

@@ -43,10 +43,12 @@ def moved_to(folder: Path, text: str, document: Document, start: Path) -> str:
     """Return the text of a document, which lies in ``start``, as it is to lie in a folder."""
     if folder.resolve() == start.resolve():
         return text
-    files = document.root.child("catalogues")
-    count = len(files.content) if files is not None and isinstance(files.content, tuple) else 0
-    places: list[tuple[Key, ...]] = [("catalogues", k) for k in range(count)]
-    for keys in [*places, ("measurements", "file"), ("document", "logo")]:
+    places: list[tuple[Key, ...]] = [("measurements", "file"), ("document", "logo")]
+    for listed in (("catalogues",), ("measurements", "file")):
+        files = document.root.at(listed)
+        count = len(files.content) if files is not None and isinstance(files.content, tuple) else 0
+        places += [(*listed, k) for k in range(count)]
+    for keys in places:
         node = document.root.at(keys)
         name = None if node is None else node.data()
         if isinstance(name, str) and not Path(name).is_absolute():

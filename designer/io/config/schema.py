@@ -16,6 +16,7 @@ from pydantic import (
     Field,
     StrictBool,
     Tag,
+    WithJsonSchema,
     model_validator,
 )
 
@@ -48,6 +49,12 @@ Readings = Annotated[
     AfterValidator(fields.different),
 ]
 Names = Annotated[tuple[fields.Text, ...], fields.list_of(0, 1000, "a list")]
+Files = Annotated[
+    tuple[fields.Text, ...],
+    fields.list_of(1, 100, "the name of a file, or a list of files"),
+    BeforeValidator(lambda given: [given] if isinstance(given, str) else given),
+    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]}),
+]
 CableNumbers = Annotated[
     tuple[Annotated[int, fields.WholeNumber(1, MOST_CABLES)], ...],
     fields.list_of(1, MOST_CABLES, "a list of one or more cable numbers, such as [1, 2]"),
@@ -245,8 +252,9 @@ class NoiseSection(Section):
 class MeasurementsSection(Section):
     """Data measured on the built machine."""
 
-    file: fields.Text = config_field(expected="the name of a CSV file")
-    """The table, a CSV file, relative to this file."""
+    file: Files = config_field(expected="the name of a CSV file, or a list of files")
+    """The table, relative to this file: CSV, Excel, Parquet or a bag of ROS; several are joined by
+    their times."""
     columns: Columns = Field(default_factory=dict)
     """What the file's columns are, where their names are not ours."""
     settled: StrictBool = True
@@ -264,7 +272,8 @@ class MeasurementsSection(Section):
     def measurements(self, folder: Path) -> Measurements:
         """Return what was measured, with its file from this folder."""
         return Measurements(
-            file=folder / self.file,
+            file=folder / self.file[0],
+            more_files=tuple(folder / name for name in self.file[1:]),
             linear_density_kg_per_m=self.cable.linear_mass,
             axial_stiffness_N=self.cable.axial_stiffness,
             diameter_m=self.cable.diameter,

@@ -1,0 +1,219 @@
+"""Tables in all formats that logs come in: text, Excel, Parquet, and bags of ROS.
+
+What is no text is told by its first bytes, a bag of ROS 2 by being a folder. Each library that
+reads one is an extra; rows then go the way of a text's, so that all is checked alike.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import io
+import math
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import fields, is_dataclass, replace
+from datetime import datetime
+from functools import partial
+from pathlib import Path
+from typing import Any, BinaryIO, NamedTuple
+
+import numpy as np
+
+from designer.documents.opened import open_input
+from designer.measured.table import (
+    LARGEST_FILE_BYTES,
+    LogTable,
+    RawColumn,
+    Rows,
+    refuse,
+    table_of,
+    text_rows,
+)
+
+_LONGEST_ARRAY = 64
+"""Longer ones in a message are scans or images, no readings."""
+
+
+class _Format(NamedTuple):
+    """A binary format: what its files begin with, and the library that reads it, with its extra."""
+
+    start: bytes
+    called: str
+    module: str
+    extra: str
+    rows: Callable[[Any, BinaryIO], Rows]
+
+
+def read_table(file: BinaryIO, name: str) -> LogTable:
+    """Return the table in an open file, which messages call ``name``.
+
+    Raises
+    ------
+    InputError
+        If it is too large, is in none of the formats, is empty, or has no head.
+    """
+    digest = hashlib.sha256()
+    start = file.read(max(len(kind.start) for kind in _FORMATS))
+    file.seek(0)
+    kind = next((kind for kind in _FORMATS if start.startswith(kind.start)), None)
+    if kind is None:
+        table = table_of(text_rows(file, name, digest.update), name)
+    else:
+        content = file.read(LARGEST_FILE_BYTES + 1)
+        if len(content) > LARGEST_FILE_BYTES:
+            limit = f"at most {LARGEST_FILE_BYTES / 1e6:g} MB"
+            refuse(name, None, "the file is too large", limit)
+        digest.update(content)
+        library = _library(kind.module, kind.extra, kind.called, name)
+        table = table_of(_checked(kind, kind.rows(library, io.BytesIO(content)), name), name)
+    return replace(table, sha256=digest.hexdigest())
+
+
+def _library(module: str, extra: str, called: str, name: str) -> Any:
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        problem = f"this is {called}, and {module.partition('.')[0]}, which reads such, is missing"
+        refuse(name, None, problem, f"pip install 'cdpr-designer[{extra}]', or a CSV file")
+
+
+def _checked(kind: _Format, rows: Rows, name: str) -> Rows:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of styles and the like, which are not read
+        try:
+            yield from rows
+        except Exception as error:  # whatever a damaged file makes of its reader
+            refuse(name, None, f"this is no {kind.called[2:].lstrip()} that can be read: {error}")
+
+
+def _workbook_rows(openpyxl: Any, file: BinaryIO) -> Rows:
+    """Yield the rows of the first sheet, by their numbers there."""
+    book = openpyxl.load_workbook(file, read_only=True, data_only=True)
+    width = 0
+    for number, row in enumerate(book.worksheets[0].iter_rows(values_only=True), start=1):
+        cells = [_text(cell) for cell in row]
+        while cells and not cells[-1]:
+            cells.pop()
+        if cells:
+            width = width or len(cells)  # that of the head
+            yield number, cells + [""] * (width - len(cells))
+
+
+def _parquet_rows(parquet: Any, file: BinaryIO) -> Rows:
+    table = parquet.ParquetFile(file)
+    yield 0, list(table.schema_arrow.names)
+    for batch in table.iter_batches(4096):
+        columns = [_parquet_cells(column) for column in batch.columns]
+        yield from ((0, list(cells)) for cells in zip(*columns, strict=True))
+
+
+def _parquet_cells(column: Any) -> list[str]:
+    arrow = importlib.import_module("pyarrow")
+    if arrow.types.is_timestamp(column.type):  # Python has no nanoseconds
+        column = column.cast(arrow.timestamp("us", column.type.tz), safe=False)
+    return [_text(cell) for cell in column.to_pylist()]
+
+
+def _text(cell: object) -> str:
+    if isinstance(cell, datetime):
+        return cell.isoformat()
+    return "" if cell is None else str(cell)
+
+
+_FORMATS = (
+    _Format(b"PAR1", "a Parquet file", "pyarrow.parquet", "parquet", _parquet_rows),
+    _Format(b"PK\x03\x04", "an Excel workbook", "openpyxl", "excel", _workbook_rows),
+)
+
+
+def is_bag(path: Path) -> bool:
+    """Return whether a path is that of a bag of ROS 2, which is a folder, or of ROS 1."""
+    return path.suffix == ".bag" or (path / "metadata.yaml").is_file()
+
+
+def read_bag(path: Path, wanted: Sequence[str]) -> list[LogTable]:
+    """Return a table for each topic of a bag that one of the wanted columns is in.
+
+    Columns are called by the topic and the field in its messages, such as
+    ``/camera/pose.pose.position.x`` or ``/winches.position[0]``, and ``time_s`` is the stamp in a
+    message's header, else when it was recorded [s, since 1970].
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or has none of the topics.
+    """
+    highlevel = _library("rosbags.highlevel", "ros", "a bag of ROS", str(path))
+    typesys = importlib.import_module("rosbags.typesys")
+    standard = typesys.get_typestore(typesys.Stores.LATEST)
+    try:
+        with highlevel.AnyReader([path], default_typestore=standard) as reader:
+            topics = sorted({connection.topic for connection in reader.connections})
+            named = [topic for topic in topics if any(_is_of(topic, name) for name in wanted)]
+            messages: dict[str, list[dict[str, float]]] = {topic: [] for topic in named}
+            chosen = [each for each in reader.connections if each.topic in named]
+            for connection, recorded_ns, raw in (
+                reader.messages(connections=chosen) if chosen else ()
+            ):
+                message = reader.deserialize(raw, connection.msgtype)
+                cells = {"time_s": _stamp_s(message) or 1e-9 * recorded_ns}
+                cells.update(_leaves(message, connection.topic))
+                messages[connection.topic].append(cells)
+    except Exception as error:  # whatever a damaged bag makes of its reader
+        refuse(str(path), None, f"this is no bag that can be read: {error}", "a bag of ROS")
+    if not named:
+        expected = (
+            f"columns such as '{topics[0] if topics else '/topic'}.field' in measurements.columns"
+        )
+        refuse(str(path), None, f"none of its topics is used: {', '.join(topics)}", expected)
+    sha256 = _digest(path)
+    return [
+        _table_of_messages(f"{path} ({topic})", cells, sha256)
+        for topic, cells in messages.items()
+        if cells
+    ]
+
+
+def _is_of(topic: str, column: str) -> bool:
+    return column.startswith(f"{topic}.")
+
+
+def _stamp_s(message: Any) -> float:
+    """Return the time in a message's header [s]; 0 without."""
+    stamp = getattr(getattr(message, "header", None), "stamp", None)
+    return 0.0 if stamp is None else stamp.sec + 1e-9 * stamp.nanosec
+
+
+def _leaves(value: Any, path: str) -> Iterator[tuple[str, float]]:
+    """Yield the numbers in a message with their names."""
+    if is_dataclass(value):
+        for entry in fields(value):
+            if entry.name != "header":
+                yield from _leaves(getattr(value, entry.name), f"{path}.{entry.name}")
+    elif isinstance(value, list | tuple | np.ndarray) and len(value) <= _LONGEST_ARRAY:
+        for place, part in enumerate(value):
+            yield from _leaves(part, f"{path}[{place}]")
+    elif isinstance(value, int | float | np.number):
+        yield path, float(value)
+
+
+def _table_of_messages(name: str, messages: list[dict[str, float]], sha256: str) -> LogTable:
+    names = dict.fromkeys(column for cells in messages for column in cells)
+    messages = sorted(messages, key=lambda cells: cells["time_s"])
+    columns = tuple(
+        RawColumn(column, np.array([cells.get(column, math.nan) for cells in messages]))
+        for column in names
+    )
+    lines = np.zeros(len(messages), dtype=np.int64)
+    return LogTable(name, columns, lines, sha256=sha256, head_line=None)
+
+
+def _digest(path: Path) -> str:
+    digest = hashlib.sha256()
+    for part in sorted(path.iterdir()) if path.is_dir() else [path]:
+        if part.is_file():
+            with open_input(part) as file:
+                for chunk in iter(partial(file.read, 1 << 20), b""):
+                    digest.update(chunk)
+    return digest.hexdigest()
