@@ -226,8 +226,9 @@ def diagnose(
 ) -> bool:
     """Compare measured data with the model, and find the effect that the model lacks.
 
-    Writes diagnosis.html, diagnosis.pdf, diagnosis.json and CONFIG.diagnosed.yaml, which has what
-    was fitted and found under `effects:`; `designer report` on it uses it everywhere. With --check
+    Writes diagnosis.html, diagnosis.pdf, diagnosis.json, residuals.csv and CONFIG.diagnosed.yaml,
+    which has what was fitted and found under `effects:`, and how surely it is known under
+    `uncertainty:`; `designer report` on it uses both. With --check
     nothing is searched, and check.html, check.pdf and diagnosis.json go into CONFIG-check.
 
     Example:  designer diagnose built-crane.yaml
@@ -271,6 +272,8 @@ def diagnose(
             result = with_design(result, catalogue.grades)
             bars("report")
             write_diagnosis(result, building, template)
+            residuals = result.residuals_csv()
+            (building / "residuals.csv").write_text(residuals, encoding="utf-8")
             text = diagnosed_config(result, folder)
             (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
         (building / "diagnosis.json").write_text(f"{result.to_json()}\n", encoding="utf-8")

@@ -6,10 +6,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from designer.diagnosis.calibration import Calibrated
 from designer.diagnosis.result import Diagnosis, RopeChoice, Use
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.cable import Cable
+from designer.model.uncertainty import MOST_DEVIATION
 from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate
 from designer.selection.efficiency import Allowance, bending_efficiency
@@ -29,6 +31,33 @@ def declared_by(diagnosis: Diagnosis) -> tuple[DeclaredEffect, ...]:
     )
     all_of_it = {(e.id, e.cable): e for e in (*diagnosis.study.effects, *fitted)}
     return tuple(all_of_it.values())
+
+
+def spreads_of(diagnosis: Diagnosis) -> dict[str, float]:
+    """Return standard deviations of a design's inputs that the data settle, by their names there.
+
+    ``payload`` is relative; ``exit_points`` [m] is the root mean square over all coordinates, those
+    that were not fitted being certain, and is left out where the study says it and not all were.
+    """
+    study, calibration = diagnosis.study, diagnosis.calibration
+    selection = study.selection
+    if calibration is None or selection is None or selection.groups:
+        return {}  # only what one rope on all cables meets is drawn
+    robot, stated = study.robot, study.uncertainty
+    of_effect: dict[str, list[Calibrated]] = {}
+    for fitted in calibration.parameters:
+        of_effect.setdefault(fitted.effect.id, []).append(fitted)
+    spreads = {}
+    for fitted in of_effect.get("platform_mass", ()):
+        spreads["payload"] = min(
+            fitted.std / (robot.platform.mass_kg + fitted.value), MOST_DEVIATION
+        )
+    points = of_effect.get("anchor_offset", [])
+    is_whole = len(points) >= robot.exit_points_m.size
+    if points and (is_whole or stated is None or stated.exit_points_m is None):
+        squares = sum(fitted.std**2 for fitted in points) / robot.exit_points_m.size
+        spreads["exit_points"] = math.sqrt(squares)
+    return {name: spread for name, spread in spreads.items() if 0.0 < spread < math.inf}
 
 
 def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:

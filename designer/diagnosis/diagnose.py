@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import BoolArray
+from designer.diagnosis.calibration import calibration_of
 from designer.diagnosis.case import Case, case_of, first_noise, rescaled
 from designer.diagnosis.errors_of import Stage, foretell, outliers_of, stage, with_sound_lengths
 from designer.diagnosis.fit import Fit, fit, with_places
@@ -138,6 +139,8 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
         foretold_after=foretell(problem, last, compared),
         not_tried=progress.left_out,
         imbalance=imbalance_of(problem.predict.built(last), measured),
+        predicted_before=problem.predicted(first),
+        calibration=calibration_of(outcome.searcher.problem, outcome.fit),
     )
 
 

@@ -39,6 +39,8 @@ class Fit:
     wald : mapping of str to float
         For each effect, how far all its values together are from doing nothing, squared, in units
         of their covariance: the smallest over the estimates of it that ``std`` is the largest of.
+    covariance : array (n_parameters, n_parameters)
+        Of all values: correlations by least squares, with ``std``.
     """
 
     settings: tuple[Setting, ...]
@@ -48,6 +50,7 @@ class Fit:
     n_data: int
     inflation: Mapping[str, float] = field(default_factory=dict)
     wald: Mapping[str, float] = field(default_factory=dict)
+    covariance: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
 
     @property
     def variance(self) -> float:
@@ -218,14 +221,14 @@ def _fit_from(
     limit = HUBER * np.sqrt(variance)
     residual[mask] = np.clip(answer.fun, -limit, limit)
     settings = settings_at(effects, answer.x)
-    std, inflation, wald = _doubts(settings, slopes, residual, variance)
-    return Fit(settings, answer.x, std, loss, count, inflation, wald)
+    doubts = _doubts(settings, slopes, residual, variance)
+    return Fit(settings, answer.x, doubts[0], loss, count, *doubts[1:])
 
 
 def _doubts(
     settings: Sequence[Setting], slopes: FloatArray, residual: FloatArray, variance: float
-) -> tuple[FloatArray, dict[str, float], dict[str, float]]:
-    """Return standard deviations, and inflation and Wald statistic of each effect; see `Fit`."""
+) -> tuple[FloatArray, dict[str, float], dict[str, float], FloatArray]:
+    """Return deviations, inflation and Wald statistic of each effect, and covariance; see `Fit`."""
     scale = np.sqrt(np.sum(slopes**2, axis=(0, 1)))
     is_unseen = scale == 0.0
     scale[is_unseen] = 1.0
@@ -253,4 +256,7 @@ def _doubts(
         ratios = [np.sum(inverse * covariance[columns, columns]) / seen for covariance in clustered]
         inflation[setting.effect.key] = float(max(1.0, *ratios))
     std = np.where(is_unseen, np.inf, np.sqrt(np.maximum(spread, 0.0)) / scale)
-    return std, inflation, wald
+    own = np.sqrt(np.maximum(np.diag(bread), 1e-300))
+    with np.errstate(invalid="ignore"):  # what has no slope has no covariance
+        covariance = bread / np.outer(own, own) * np.outer(std, std)
+    return std, inflation, wald, covariance

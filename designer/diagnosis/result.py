@@ -12,10 +12,19 @@ import numpy as np
 
 from designer import __version__
 from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.calibration import Calibration
 from designer.diagnosis.errors_of import Error, Foretold, Outlier, Stage
 from designer.diagnosis.search import Proposal, Step
 from designer.diagnosis.structure import Correction, Structure, Whereabouts
-from designer.documents.plain import DIAGNOSIS_FORMAT, Json, json_text, plain, record
+from designer.documents.plain import (
+    DIAGNOSIS_FORMAT,
+    Json,
+    csv_text,
+    finite,
+    json_text,
+    plain,
+    record,
+)
 from designer.effects.effect import Effect, Readings, Setting
 from designer.model.machine import Machine
 from designer.model.measured_data import KINDS, Measured, Noise, ReadingKind
@@ -224,6 +233,10 @@ class Diagnosis:
         What the cable chosen before would meet by the model after, where another is chosen.
     mounted_before, mounted_after : Use or None
         What the cable on the machine meets, where its breaking load is given as well.
+    predicted_before : Readings or None
+        By the model as declared, unknowns fitted.
+    calibration : Calibration or None
+        How well the data settle what was fitted; None where nothing was.
     """
 
     study: Study
@@ -257,6 +270,8 @@ class Diagnosis:
     kept: Use | None = None
     mounted_before: Use | None = None
     mounted_after: Use | None = None
+    predicted_before: Readings | None = None
+    calibration: Calibration | None = None
 
     @property
     def final(self) -> Stage:
@@ -268,6 +283,39 @@ class Diagnosis:
         """Found effects with their values, without those unknown from the start."""
         keys = {finding.effect.key for finding in self.findings}
         return tuple(s for s in self.final.settings if s.effect.key in keys)
+
+    def stds_of(self, setting: Setting) -> dict[str, float]:
+        """Return the standard deviation of each fitted value of an effect."""
+        fitted = () if self.calibration is None else self.calibration.parameters
+        return {c.parameter.name: c.std for c in fitted if c.effect.key == setting.effect.key}
+
+    def residuals_csv(self) -> str:
+        """Return the text of ``residuals.csv``: what was measured and predicted, in SI units.
+
+        A line for each row and cable; a cell without a number is empty.
+        """
+        heads = [
+            f"{kind.name}_{when}{kind.unit_SI}"
+            for kind in KINDS
+            for when in ("", "before_", "after_")
+        ]
+        columns = [
+            kind.of(values)
+            for kind in KINDS
+            for values in (self.measured, self.predicted_before, self.predicted)
+            if values is not None
+        ]
+        lines = (
+            [
+                number,
+                cable + 1,
+                int(self.heldout[row]),
+                *(finite(float(column[row, cable])) for column in columns),
+            ]
+            for row, number in enumerate(self.measured.row_numbers.tolist())
+            for cable in range(self.machine.robot.n_cables)
+        )
+        return csv_text([["row", "cable", "heldout", *heads], *lines])
 
     @property
     def errors(self) -> Iterator[tuple[ReadingKind, Error, Error]]:
@@ -334,7 +382,8 @@ class Diagnosis:
             "withdrawn": self.withdrawn,
             "left_out": self.study.known_effects.problems,
             "skipped": reasons(self.skipped),
-            "unknown": self.given,
+            "unknown": [{**record(s), "std": self.stds_of(s)} for s in self.given],
+            "calibration": self.calibration and _calibration(self.calibration),
             "not_plausible": self.doubts,
             "unexplained": {
                 **structure_dict(self.structure_after),
@@ -395,6 +444,22 @@ def rows_dict(outliers: Sequence[Outlier], measured: Measured) -> Json:
 def structure_dict(structure: Structure) -> Json:
     """Return what files hold of a test."""
     return {"present": structure.is_present, **record(structure)}
+
+
+def _calibration(calibration: Calibration) -> Json:
+    """Return what files hold of how well the data settle what was fitted."""
+    return {
+        **record(calibration),
+        "observability": {"index": "Borm and Menq O1", "value": calibration.observability},
+        "correlated": [
+            {
+                "first": {**first.effect.identified(), "name": first.parameter.name},
+                "second": {**second.effect.identified(), "name": second.parameter.name},
+                "correlation": correlation,
+            }
+            for first, second, correlation in calibration.correlated
+        ],
+    }
 
 
 def reasons(effects: Sequence[tuple[str, str]]) -> list[Json]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.selection_json import candidates_csv
-from designer.diagnosis.design import declared_by
+from designer.diagnosis.design import declared_by, spreads_of
 from designer.diagnosis.result import Diagnosis, effects_table
 from designer.documents.document import decode, document_of
 from designer.documents.edits import scalar, with_section, with_value
@@ -66,9 +66,9 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None
     """Return the text of the config with the whole model in it.
 
     What was fitted and what was found go under ``effects``, noise that was estimated under
-    ``measurements.noise``. The rest stays as its author laid it out, but for paths in it, which
-    are rewritten for a config that lies in ``folder``. The ``text`` of the config is what its
-    file holds, if left out.
+    ``measurements.noise``, deviations of what a design draws under ``uncertainty``. The rest stays
+    as its author laid it out, but for paths in it, which are rewritten for a config that lies in
+    ``folder``. The ``text`` of the config is what its file holds, if left out.
     """
     source, measured = diagnosis.study.source.path, diagnosis.study.measurements
     assert measured is not None
@@ -84,6 +84,9 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None
         places["noise", "estimated"] = f"[{', '.join(noise)}]"
     for place, value in places.items():
         text = with_value(text, ("measurements", *place), value)
+    for name, spread in spreads_of(diagnosis).items():
+        value = f"{{standard_deviation: {spread:.3g}}}"
+        text = with_value(text, ("uncertainty", name), value)
     effects = effects_table(declared_by(diagnosis))
     return with_section(text, "effects", effects, _origin(diagnosis))
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import groupby
 
 import numpy as np
 
@@ -28,6 +29,7 @@ _ABOUT_AS_FAR = 0.9
 _MOST_CARRIERS = 6
 _MOST_TRIALS = 6
 """As many rows as leave the table beside its text on one page; the JSON has all."""
+_MOST_CORRELATED = 12
 _MOST_OUTLIERS = 30
 """Half a page."""
 
@@ -127,6 +129,19 @@ def errors(diagnosis: Diagnosis) -> Context:
         "foretold": foretold,
         "unsolved": unsolved,
         "cable_heads": [(f"{prefix}{k}", "") for k in range(1, n_cables + 1)],
+    }
+
+
+def calibration(diagnosis: Diagnosis) -> Context | None:
+    """How well the data settle what was fitted; None where nothing was."""
+    if diagnosis.calibration is None:
+        return None
+    unknown = {setting.effect.key for setting in diagnosis.given}
+    by_effect = groupby(diagnosis.calibration.parameters, lambda fitted: fitted.effect.key)
+    return {
+        "fitted": [(key, key in unknown, list(fitted)) for key, fitted in by_effect],
+        "correlated": list(diagnosis.calibration.correlated),
+        "most_correlated": _MOST_CORRELATED,
     }
 
 

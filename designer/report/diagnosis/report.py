@@ -20,6 +20,7 @@ SECTIONS: tuple[tuple[str, Callable[[Diagnosis], Context | None]], ...] = (
     ("answer", contexts.first_page),
     ("found", contexts.found),
     ("errors", contexts.errors),
+    ("calibration", contexts.calibration),
     ("residual", contexts.residual),
     ("unexplained", contexts.unexplained),
     ("search", contexts.search),

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 
 from designer.arrays import IntArray
+from designer.diagnosis.calibration import Calibrated
 from designer.diagnosis.errors_of import Interval
 from designer.diagnosis.result import Estimate, Finding
 from designer.diagnosis.search import EffectTrial
@@ -150,9 +151,9 @@ def _covariate(name: str) -> tuple[str, str]:
     return name, ""
 
 
-def estimate(item: Estimate | float, unit: str) -> str:
+def estimate(item: Estimate | Calibrated | float, unit: str) -> str:
     """Return a value with its standard deviation, if it has one, to two digits of the latter."""
-    value, std = (item.value, item.std) if isinstance(item, Estimate) else (item, math.nan)
+    value, std = (item, math.nan) if isinstance(item, float | int) else (item.value, item.std)
     if unit == "m" and abs(value) < 1.0:
         value, std, unit = 1e3 * value, 1e3 * std, "mm"
     size = max(abs(value), std if math.isfinite(std) else 0.0)

@@ -1,0 +1,152 @@
+"""What a calibration needs to know of its fit: how surely, how separately, and on which rows.
+
+Condition number and observability are those of the Jacobian of the residuals in units of noise, by
+parameters in units of their typical change, so that neither depends on metres or newtons. With its
+singular values σ, n rows and m parameters, the observability index is O1 = (σ1 … σm)^(1/m) / √n
+(Borm and Menq, Int. J. Robotics Research 10 (1991) 51, doi:10.1177/027836499101000106).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.diagnosis.fit import HUBER, Fit, jacobian
+from designer.diagnosis.problem import Problem
+from designer.effects.effect import Effect, Parameter
+
+STRONG = 0.9
+"""Correlation from which on two values are named."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Calibrated:
+    """A fitted parameter.
+
+    Parameters
+    ----------
+    effect, parameter
+        Which it is.
+    value, std : float
+        What was fitted, and its standard deviation.
+    influence : float
+        Its largest change where one row is left out, in standard deviations; NaN where no row has
+        a slope in it.
+    influence_row : int
+        That row, as numbered in the file.
+    """
+
+    effect: Effect = field(metadata={"json": Effect.identified})
+    parameter: Parameter = field(metadata={"json": lambda p: {"name": p.name, "unit": p.unit}})
+    value: float
+    std: float
+    influence: float
+    influence_row: int
+
+    @property
+    def label(self) -> str:
+        """What it is called among those of all effects."""
+        return f"{self.parameter.label} of {self.effect.key}"
+
+
+class Correlated(NamedTuple):
+    """Two parameters that these data tell badly from one another."""
+
+    first: Calibrated
+    second: Calibrated
+    correlation: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Calibration:
+    """How well the data settle what was fitted, unknowns from the start included.
+
+    Parameters
+    ----------
+    parameters : tuple of Calibrated
+        In the order in which the effects act.
+    covariance : array (n_parameters, n_parameters)
+        In that order, in SI units.
+    condition : float
+        Condition number of the scaled Jacobian.
+    observability : float
+        Borm and Menq's O1 of it.
+    """
+
+    parameters: tuple[Calibrated, ...]
+    covariance: FloatArray
+    condition: float
+    observability: float
+
+    @property
+    def correlated(self) -> Iterator[Correlated]:
+        """The pairs beyond `STRONG`, the strongest first."""
+        std = np.array([parameter.std for parameter in self.parameters])
+        with np.errstate(invalid="ignore"):
+            correlation = np.triu(self.covariance / np.outer(std, std), 1)
+        correlation = np.nan_to_num(correlation, nan=0.0)
+        for place in np.argsort(-np.abs(correlation), axis=None):
+            i, k = np.unravel_index(place, correlation.shape)
+            if abs(correlation[i, k]) <= STRONG:
+                return
+            yield Correlated(self.parameters[i], self.parameters[k], float(correlation[i, k]))
+
+
+def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
+    """Return how well the data of a fit settle it; None where nothing was fitted."""
+    if not fit.settings:
+        return None
+    effects = [setting.effect for setting in fit.settings]
+    pairs = [(effect, parameter) for effect in effects for parameter in effect.parameters]
+    typical = np.array([parameter.typical for _, parameter in pairs])
+    residual = problem.residual(fit.settings)
+    # Huber's weights, as in the fit: outliers settle nothing.
+    limit = HUBER * math.sqrt(fit.variance)
+    weight = np.sqrt(limit / np.maximum(np.abs(residual), limit))
+    slopes = np.nan_to_num(weight[..., None] * jacobian(problem, effects, fit.vector) * typical)
+    has_slope = slopes.any(axis=(0, 1))  # the time of a step has none
+    slopes = slopes[..., has_slope]
+    change = np.full((len(residual), len(pairs)), np.nan)
+    change[:, has_slope] = _changes(slopes, np.nan_to_num(weight * residual))
+    change *= typical / fit.std
+    sizes = np.abs(np.nan_to_num(change))
+    row = np.argmax(sizes, axis=0)
+    singular = np.linalg.svd(np.linalg.qr(np.vstack(slopes), mode="r"), compute_uv=False)
+    n_rows = int(np.isfinite(residual).any(axis=1).sum())
+    with np.errstate(divide="ignore"):
+        logarithm = np.log(singular)
+    return Calibration(
+        tuple(
+            Calibrated(
+                *pair,
+                value=float(fit.vector[k]),
+                std=float(fit.std[k]),
+                influence=float(sizes[row[k], k]) if has_slope[k] else math.nan,
+                influence_row=int(problem.measured.row_numbers[row[k]]),
+            )
+            for k, pair in enumerate(pairs)
+        ),
+        fit.covariance,
+        condition=float(singular[0] / singular[-1]) if singular[-1] > 0.0 else math.inf,
+        observability=float(np.exp(np.mean(logarithm)) / math.sqrt(n_rows)),
+    )
+
+
+def _changes(slopes: FloatArray, residual: FloatArray) -> FloatArray:
+    """Return by how much the fit moves without each row (n_rows, n_parameters): one Newton step.
+
+    Without the slopes J of a row and its residual r it moves by (A - JᵀJ)⁻¹ Jᵀ r, where A sums JᵀJ
+    over all rows; that is A⁻¹ Jᵀ (1 - J A⁻¹ Jᵀ)⁻¹ r. A row that alone settles a parameter has no
+    such step, and a huge one is returned.
+    """
+    bread = np.linalg.pinv(np.einsum("rcp,rcq->pq", slopes, slopes), rcond=1e-12, hermitian=True)
+    leaning = slopes @ bread
+    leverage = leaning @ slopes.transpose(0, 2, 1)
+    rest = (1.0 + 1e-9) * np.eye(slopes.shape[1]) - leverage
+    step = np.linalg.solve(rest, residual[..., None])[..., 0]
+    return np.asarray(np.einsum("rcp,rc->rp", leaning, step))
