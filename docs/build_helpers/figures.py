@@ -4,6 +4,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 import designer
 from designer.arrays import frozen_array
@@ -17,7 +18,7 @@ def draw_all(folder):
     """Draw each figure that is not there yet."""
     plt.switch_backend("Agg")
     folder.mkdir(exist_ok=True)
-    for draw in (catenary, sizing, internal, cone):
+    for draw in (catenary, sizing, internal, cone, tilt, euler):
         path = Path(folder, f"{draw.__name__}.svg")
         if not path.exists():
             figure, axes = plt.subplots(figsize=(6.4, 3.2), layout="constrained")
@@ -96,3 +97,66 @@ def cone(axes):
     axes.text(-0.1, 1.3, "what the weight asks for: outside", ha="right")
     axes.set(aspect="equal", xlim=(-3.2, 3.6), ylim=(-1.5, 2.4))
     axes.set_axis_off()
+
+
+def tilt(axes):
+    """A base frame that leans by positive angles, as the model turns it; gravity stays upright."""
+    masts = frozen_array([[-1.0, -1.0, 1.2], [1.0, -1.0, 1.2], [0.0, 1.0, 1.2]])
+    views = (("ry", (0.0, 0.25), 0, "y away from you"), ("rx", (0.25, 0.0), 1, "x toward you"))
+    for x, (name, angles, across, depth) in zip((0.0, 4.4), views, strict=True):
+        robot = Robot(masts, Platform(1.0), tilt_rad=frozen_array(angles))
+        # Its columns are axes of the base; of the room, the picture has one axis and the height.
+        horizontal, up = robot.level[[across, 2]][:, [across, 2]].T
+        place = np.array([x, 0.0])
+        ground = np.array([place - 1.3 * horizontal, place + 1.3 * horizontal])
+        axes.plot(*ground.T, color="0.4", linewidth=3)
+        for side in (-1.1, 1.1):
+            foot = place + side * horizontal
+            axes.plot(*np.array([foot, foot + 1.4 * up]).T, color="0.4", linewidth=1.5)
+        _arrow(axes, place, 1.6 * horizontal, f"C{across}", "xy"[across])
+        _arrow(axes, place, 1.2 * up, "C2", "z")
+        axes.plot([x, x], [0.0, 1.5], "k:", linewidth=1)
+        lean = np.linspace(0.0, np.arctan2(*up), 20)
+        _turn(axes, place + 0.9 * np.array([np.sin(lean), np.cos(lean)]).T)
+        axes.text(x, 1.75, f"{name} > 0, {depth}", ha="center")
+        axes.annotate("", (x, -1.0), (x, -0.1), arrowprops={"arrowstyle": "->", "lw": 2})
+        axes.text(x + 0.1, -0.8, "gravity")
+    axes.set(aspect="equal", xlim=(-1.9, 6.3), ylim=(-1.1, 2.1))
+    axes.set_axis_off()
+
+
+def euler(axes):
+    """The turns of euler_intrinsic_zyx by positive angles, about axes as those before left them."""
+    screen = np.array([[-0.5, 0.95, 0.0], [-0.35, -0.1, 1.0]])  # x toward you, y right, z up
+    turned = Rotation.identity()
+    stages = (("z", 40.0, "y"), ("y", 30.0, "x"), ("x", 50.0, "y"))
+    for number, (name, angle_deg, moved) in enumerate(stages):
+        place = np.array([2.6 * number, 0.0])
+        before = turned
+        turned = before * Rotation.from_euler(name.upper(), angle_deg, degrees=True)
+        for axis, unit in zip("xyz", np.eye(3), strict=True):
+            if axis != name:
+                _arrow(axes, place, screen @ before.apply(unit), "0.75", "")
+            colour = f"C{'xyz'.index(axis)}"
+            _arrow(axes, place, screen @ turned.apply(unit), colour, axis)
+        part = Rotation.from_euler(
+            name.upper(), np.linspace(0.0, angle_deg, 20)[:, None], degrees=True
+        )
+        arc = (before * part).apply(0.75 * np.eye(3)["xyz".index(moved)]) @ screen.T + place
+        _turn(axes, arc)
+        which = "z" if number == 0 else f"the new {name}"
+        axes.text(place[0], -1.15, f"{number + 1}: about {which}", ha="center")
+    axes.set(aspect="equal", xlim=(-1.1, 6.6), ylim=(-1.3, 1.3))
+    axes.set_axis_off()
+
+
+def _turn(axes, arc):
+    axes.plot(*arc[:-1].T, "k", linewidth=1)
+    axes.annotate("", arc[-1], arc[-3], arrowprops={"arrowstyle": "->"})
+
+
+def _arrow(axes, start, along, colour, label):
+    start, along = np.asarray(start), np.asarray(along)
+    style = {"arrowstyle": "->", "color": colour, "lw": 1.6}
+    axes.annotate("", start + along, start, arrowprops=style)
+    axes.text(*(start + 1.12 * along), label, color=colour, ha="center", va="center")
