@@ -15,22 +15,67 @@ from twins.dataset import DataSet, make, size_for
 from twins.effects import predict
 from twins.robots import TwinRobot
 
-LASTS = 0.9
-"""Correlation of serially correlated noise from row to row."""
 FREEDOM = 3
 """Degrees of freedom of Student's t."""
 
+Shape = tuple[int, ...]
+Draw = Callable[[np.random.Generator, Shape], np.ndarray]
+"""Noise in units of the usual one, of a shape (rows, cables)."""
 Trouble = Callable[[TwinRobot, float, int], DataSet]
 
 
-def _noisy(robot: TwinRobot, seed: int, draw: Callable[..., np.ndarray]) -> DataSet:
-    clean = make(robot, seed=seed, noise=0.0)
-    shape = clean.length_m.shape
+def noisy(
+    robot: TwinRobot, draw: Draw, seed: int, rows: int = 120, *, settled: bool = True
+) -> DataSet:
+    """Return a machine without effects, read with noise drawn in units of the usual one."""
+    clean = make(robot, seed=seed, noise=0.0, rows=rows, settled=settled)
+    rng, shape = np.random.default_rng([seed, 1]), clean.length_m.shape
     return _with(
         replace(clean, noise=1.0),
-        clean.length_m + robot.noise_m * draw(shape),
-        clean.tension_N + robot.noise_N * draw(shape),
+        clean.length_m + robot.noise_m * draw(rng, shape),
+        clean.tension_N + robot.noise_N * draw(rng, shape),
     )
+
+
+def _white(rng: np.random.Generator, shape: Shape) -> np.ndarray:
+    return rng.normal(size=shape)
+
+
+def _lasting(decay: float) -> Draw:
+    """Noise of unit variance of which that share is left one row later, from the first row on."""
+
+    def draw(rng: np.random.Generator, shape: Shape) -> np.ndarray:
+        white = rng.normal(size=shape)
+        white[1:] *= np.sqrt(1.0 - decay**2)
+        return np.asarray(lfilter([1.0], [1.0, -decay], white, axis=0))
+
+    return draw
+
+
+def _student(rng: np.random.Generator, shape: Shape) -> np.ndarray:
+    return rng.standard_t(FREEDOM, shape)
+
+
+def _quantised(rng: np.random.Generator, shape: Shape) -> np.ndarray:
+    """A display that shows every second multiple of the noise."""
+    return np.round(rng.normal(size=shape) / 2.0) * 2.0
+
+
+def _walk(rng: np.random.Generator, shape: Shape) -> np.ndarray:
+    """White noise beside a random walk that goes as far as it within ten rows."""
+    return rng.normal(size=shape) + np.cumsum(rng.normal(size=shape), axis=0) / np.sqrt(10.0)
+
+
+NO_EFFECT: dict[str, Draw] = {
+    "white": _white,
+    "Student": _student,
+    "AR0.5": _lasting(0.5),
+    "AR0.9": _lasting(0.9),
+    "AR0.97": _lasting(0.97),
+    "quantised": _quantised,
+    "walk": _walk,
+}
+"""Noise of unit size: nothing is wrong with the machine."""
 
 
 def _with(dataset: DataSet, length_m: np.ndarray, tension_N: np.ndarray) -> DataSet:
@@ -39,18 +84,15 @@ def _with(dataset: DataSet, length_m: np.ndarray, tension_N: np.ndarray) -> Data
 
 def _serial(robot: TwinRobot, size: float, seed: int) -> DataSet:
     """Noise of the declared size that lasts over some ten rows."""
-    rng = np.random.default_rng([seed, 1])
-
-    def draw(shape: tuple[int, ...]) -> np.ndarray:
-        white = rng.normal(size=shape) * np.sqrt(1 - LASTS**2)
-        return size * np.asarray(lfilter([1.0], [1.0, -LASTS], white, axis=0))
-
-    return _noisy(robot, seed, draw)
+    return noisy(robot, _sized("AR0.9", size), seed)
 
 
-def _student(robot: TwinRobot, size: float, seed: int) -> DataSet:
-    rng = np.random.default_rng([seed, 2])
-    return _noisy(robot, seed, lambda shape: size * rng.standard_t(FREEDOM, shape))
+def _heavy(robot: TwinRobot, size: float, seed: int) -> DataSet:
+    return noisy(robot, _sized("Student", size), seed)
+
+
+def _sized(kind: str, size: float) -> Draw:
+    return lambda rng, shape: size * NO_EFFECT[kind](rng, shape)
 
 
 def _pose(robot: TwinRobot, size: float, seed: int) -> DataSet:
@@ -168,7 +210,7 @@ NOISES: dict[str, tuple[Trouble, float]] = {
     "serial noise": (_serial, 1.0),
     "pose noise": (_pose, 3.0),
     "gusts": (_gusts, 3.0),
-    "Student noise": (_student, 1.0),
+    "Student noise": (_heavy, 1.0),
 }
 """Nothing is wrong with the machine: whatever is named is a false finding."""
 
