@@ -22,10 +22,15 @@ from designer.diagnosis.fit import Fit, jacobian, with_places
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Reason, Withdrawn
 from designer.diagnosis.search import Searcher, Step, without
-from designer.diagnosis.statistics import SIGNIFICANCE, block_of, without_outliers
+from designer.diagnosis.statistics import (
+    SIGNIFICANCE,
+    beside,
+    block_of,
+    orthonormal,
+    without_outliers,
+)
 from designer.diagnosis.structure import (
     Structure,
-    beside,
     covariates_of,
     find_structure,
 )
@@ -54,8 +59,8 @@ def drifting(outcome: Outcome) -> Withdrawn | None:
     residual = np.clip(unclipped, -limit, limit)
     is_used = rows[:, None] & ~np.isnan(residual)
     slopes = jacobian(problem, [s.effect for s in model.settings], model.vector)
-    orthonormal = _orthonormal(slopes[is_used])
-    remainder = beside(orthonormal, residual[is_used])
+    spanned = orthonormal(slopes[is_used])
+    remainder = beside(spanned, residual[is_used])
     unexplained = model.loss - model.n_data
     predicted = problem.surroundings(model.settings)
     covariates = covariates_of(problem.measured, predicted)
@@ -66,11 +71,11 @@ def drifting(outcome: Outcome) -> Withdrawn | None:
         # What the effect takes off the sum of squares that the others, fitted anew, leave.
         rest = [s for s in model.settings if s is not setting]
         change = problem.residual(rest)[is_used] - unclipped[is_used]
-        other_slopes = _orthonormal(np.delete(slopes, columns, axis=-1)[is_used])
+        other_slopes = orthonormal(np.delete(slopes, columns, axis=-1)[is_used])
         size = np.sqrt(max(np.sum(beside(other_slopes, change) ** 2), model.variance))
         for name, z in _weights(structure, covariates, predicted, rows):
             moved = (slopes[..., columns] * z[..., None])[is_used]
-            further = _orthonormal(beside(orthonormal, moved))
+            further = orthonormal(beside(spanned, moved))
             gain = float(np.sum((further.T @ remainder) ** 2))
             # With six covariates for each of up to five effects, the chance of any is below 0.001.
             drift = gain if chi2.sf(gain / model.variance, moved.shape[1]) < 1e-5 else 0.0
@@ -108,16 +113,6 @@ def _weights(
 def _standard(values: FloatArray, rows: BoolArray) -> FloatArray:
     seen = values[rows]
     return np.nan_to_num((values - np.nanmean(seen)) / (np.nanstd(seen) or 1.0))
-
-
-def _orthonormal(columns: FloatArray) -> FloatArray:
-    """Return an orthonormal basis of the columns, those that are nearly dependent left out."""
-    if columns.shape[1] == 0:
-        return columns
-    scale = np.linalg.norm(columns, axis=0)
-    scale[scale == 0.0] = 1.0
-    u, s, _ = np.linalg.svd(columns / scale, full_matrices=False)
-    return np.asarray(u[:, s > 1e-6 * s[0]])
 
 
 _SMALL = 0.5

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.drift import beside_drift
 from designer.diagnosis.fit import Fit, fit, huber
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import SIGNIFICANCE, folds
@@ -202,10 +203,20 @@ class Searcher:
             if settled or trial.chance >= SIGNIFICANCE:  # needs no proof
                 answer.append(trial)
                 continue
-            gain = self._unseen_loss(effects, trial.fit)
-            gain -= self._unseen_loss([*effects, trial.effect], trial.fit)
-            answer.append(replace(trial, heldout_gain=gain / trial.fit.variance))
+            tested = self._beside_drift(trial, present, len(outsiders))
+            if tested.chance < SIGNIFICANCE:
+                gain = self._unseen_loss(effects, trial.fit)
+                gain -= self._unseen_loss([*effects, trial.effect], trial.fit)
+                tested = replace(tested, heldout_gain=gain / trial.fit.variance)
+            answer.append(tested)
         return answer
+
+    def _beside_drift(self, trial: EffectTrial, present: Fit, looks: int) -> EffectTrial:
+        """Return a trial with no more gain than a drift of the readings leaves it."""
+        gain = beside_drift(self.problem, present, trial.fit, trial.effect, self.rows)
+        if gain >= trial.gain:
+            return trial
+        return replace(trial, gain=gain, chance=_chance(gain, trial.effect, looks))
 
     def rivals(
         self, effects: Sequence[Effect], effect: Effect, present: Fit, steps: Sequence[Step]

@@ -64,6 +64,21 @@ def _median(residual: FloatArray) -> FloatArray:
     return np.where(empty, 0.0, np.nanmedian(np.where(empty, 0.0, residual), axis=0))
 
 
+def beside(basis: FloatArray, columns: FloatArray) -> FloatArray:
+    """Return what columns hold beside the span of an orthonormal basis."""
+    return np.asarray(columns - basis @ (basis.T @ columns))
+
+
+def orthonormal(columns: FloatArray) -> FloatArray:
+    """Return an orthonormal basis of the columns, those that are nearly dependent left out."""
+    if columns.shape[1] == 0:
+        return columns
+    scale = np.linalg.norm(columns, axis=0)
+    scale[scale == 0.0] = 1.0
+    u, s, _ = np.linalg.svd(columns / scale, full_matrices=False)
+    return np.asarray(u[:, s > 1e-6 * s[0]])
+
+
 _HELD_OUT_EVERY = 4
 """A quarter of the rows: three blocks at least, and the fit keeps most."""
 

@@ -17,6 +17,7 @@ from designer.diagnosis.statistics import (
     MAD_TO_STD,
     SIGNIFICANCE,
     Lasting,
+    beside,
     lasting,
     rms,
     spread,
@@ -254,11 +255,6 @@ def channels_of(residual: FloatArray) -> FloatArray:
         kinds += [filled, mean]
     channels = np.hstack(kinds) if kinds else np.empty((len(residual), 0))
     return np.asarray(channels[:, channels.any(axis=0)])
-
-
-def beside(basis: FloatArray, columns: FloatArray) -> FloatArray:
-    """Return what columns hold beside the span of an orthonormal basis."""
-    return np.asarray(columns - basis @ (basis.T @ columns))
 
 
 def _basis(column: FloatArray) -> FloatArray:

@@ -1,8 +1,8 @@
 """How often a diagnosis finds something in readings that differ from the model by noise alone.
 
-    python tests/benchmarks/false_findings.py [--sets 12] [--first 0] [--rows 120] [--robot yard3]
+    python tests/benchmarks/false_findings.py [--sets 12] [--first 0] [--rows 60]
                                               [--noises AR0.9,AR0.97,…] [--declared both]
-                                              [--moving]
+                                              [--robots fast3,hall6,yard3] [--moving]
 
 The twins come from physics that shares nothing with the product (`tests/twins`), and have no
 effect. Prints, for each kind of noise, how many sets have a finding, and which; and how many are
@@ -16,7 +16,6 @@ import os
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -66,8 +65,8 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--sets", type=int, default=12, help="of each kind")
     parser.add_argument("--first", type=int, default=0, help="first seed")
-    parser.add_argument("--rows", type=int, default=120)
-    parser.add_argument("--robot", default="yard3")
+    parser.add_argument("--rows", type=int, default=60)
+    parser.add_argument("--robots", default="fast3,hall6,yard3", help="in turn")
     parser.add_argument("--noises", default=",".join(NO_EFFECT))
     parser.add_argument("--declared", choices=("yes", "no", "both"), default="both")
     parser.add_argument("--workers", type=int, default=os.cpu_count())
@@ -76,29 +75,28 @@ def main() -> None:
     arguments = parser.parse_args()
     seeds = range(arguments.first, arguments.first + arguments.sets)
     ways = {"yes": (True,), "no": (False,), "both": (True, False)}[arguments.declared]
-    print(
-        f"{'noise':12} {'given':9} {'sets':>4} {'found':>5} {'left':>5} {'s':>5}  found, verdicts"
-    )
+    names = arguments.robots.split(",")
+    print(f"{'noise':12} {'given':9} {'sets':>4} {'found':>5} {'left':>5} {'s':>5}  what")
     with ProcessPoolExecutor(arguments.workers) as pool:
         for kind in arguments.noises.split(","):
             for is_declared in ways:
-                set_of = arguments.robot, kind, is_declared, not arguments.moving, arguments.rows
-                jobs = [(*set_of, seed) for seed in seeds]
+                of_kind = kind, is_declared, not arguments.moving, arguments.rows
+                jobs = [(names[seed % len(names)], *of_kind, seed) for seed in seeds]
                 answers = list(pool.map(outcome, jobs))
                 false = sum(bool(named) for named, *_ in answers)
                 left = sum(bool(carrier) for *_, carrier, _ in answers)
-                names = Counter(name for named, *_ in answers for name in named)
+                effects = Counter(name for named, *_ in answers for name in named)
                 verdicts = Counter(verdict for _, verdict, *_ in answers)
                 print(
                     f"{kind:12} {'declared' if is_declared else 'estimated':9} {len(jobs):4d} "
                     f"{false:5d} {left:5d} {np.mean([a[-1] for a in answers]):5.1f}  "
-                    f"{dict(names)} {dict(verdicts)}",
+                    f"{dict(effects)} {dict(verdicts)}",
                     flush=True,
                 )
                 if arguments.verbose:
                     for job, answer in zip(jobs, answers, strict=True):
                         if answer[0]:
-                            print(f"    seed {job[-1]}: {answer}", flush=True)
+                            print(f"    {job[0]} seed {job[-1]}: {answer}", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,154 @@
+r"""Noise that lasts over rows as a rival of every finding.
+
+Of each reading, the residual is taken as ``r = J δ + x + e``: what the parameters do, a part that
+keeps φ of itself from row to row (a random walk where φ is nearly 1), and a part that is each row's
+own. Which φ, and which share of the variance the former has, is told by the restricted likelihood
+(Patterson and Thompson, Biometrika 58, 1971), in which the parameters have no part. A short series
+tells that badly, and rather too low than too high. So of what the likelihood does not exclude, and
+what is no less likely than white noise, that is taken of which a mean over the rows is the most in
+doubt. The gain of an effect is then counted by generalised least squares: what is left is made
+white by a Kalman filter, which knows rows that are missing or held out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.fit import HUBER, Fit, jacobian, with_places
+from designer.diagnosis.problem import Problem
+from designer.diagnosis.statistics import beside, orthonormal, without_outliers
+from designer.effects.effect import Effect
+
+_DECAYS = (0.5, 0.8, 0.9, 0.95, 0.98, 0.995)
+"""The last keeps half of itself over 140 rows: to a log of some hundred, a random walk."""
+_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 0.9, 1.0)
+_NOT_EXCLUDED = 3.0
+"""Logarithm of the likelihood's ratio to the best: one true noise in seventy is farther off."""
+_LEAST_FREEDOM = 10
+"""Readings beyond the parameters without which nothing is told of how noise lasts."""
+
+
+def beside_drift(problem: Problem, rest: Fit, model: Fit, effect: Effect, rows: BoolArray) -> float:
+    """Return the gain of an effect in a noise that may drift, over rows (n_rows,) that were fitted.
+
+    In units of the variance, and for as many independent readings as there are; ``rest`` is fitted
+    without the effect. Readings that stand off from both models tell nothing.
+    """
+    mask = rows[:, None] & np.isfinite(problem.measured.readings)
+    residuals = [
+        np.where(mask, problem.residual(fitted.settings), np.nan) for fitted in (rest, model)
+    ]
+    suits = np.any([np.isfinite(without_outliers(r)) for r in residuals], axis=0)
+    before, after = (
+        np.where(suits, np.clip(residual, -limit, limit), np.nan)
+        for residual, fitted in zip(residuals, (rest, model), strict=True)
+        if (limit := HUBER * np.sqrt(fitted.variance))
+    )
+    slopes = jacobian(problem, [setting.effect for setting in model.settings], model.vector)
+    own = np.zeros(len(model.vector), dtype=np.bool_)
+    for setting, columns in with_places(model.settings):
+        own[columns] = setting.effect.key == effect.key
+    return gain_beside_drift(
+        before, after, slopes, own, problem.free_readings(mask) / max(mask.sum(), 1)
+    )
+
+
+def gain_beside_drift(
+    before: FloatArray, after: FloatArray, slopes: FloatArray, own: BoolArray, free: float = 1.0
+) -> float:
+    """Return what an effect takes off the sum of squares, in a noise that may drift.
+
+    Parameters
+    ----------
+    before, after : array (n_rows, n_channels)
+        Residuals without and with the effect, in rows as they were visited; NaN where not fitted.
+    slopes : array (n_rows, n_channels, n_parameters)
+        Of the latter, in all parameters of the model.
+    own : array (n_parameters,) of bool
+        Which of them are the effect's.
+    free : float
+        Share of the readings that are left to test the model.
+    """
+    is_read = np.isfinite(before) & np.isfinite(after)
+    slopes = np.where(is_read[..., None], slopes, 0.0)
+    scale = np.linalg.norm(slopes, axis=(0, 1))
+    slopes = slopes / np.where(scale > 0.0, scale, 1.0)
+    residuals = np.where(is_read[..., None], np.stack([after, before], axis=-1), 0.0)
+    decay, share, variance = _noise_of(residuals[..., 0], slopes, is_read, free)
+    columns = np.concatenate([residuals, slopes], axis=-1)
+    steps = _innovations(columns, is_read, decay, share)
+    white = np.stack([step / np.sqrt(variance)[:, None] for step, _ in steps])
+    flat = white.reshape(-1, columns.shape[-1])
+    others = orthonormal(flat[:, 2:][:, ~own])
+    after_white, before_white, *_ = beside(others, flat).T
+    further = orthonormal(beside(others, flat[:, 2:][:, own]))
+    left = beside(further, after_white)
+    gain = float(before_white @ before_white) - float(left @ left)
+    # Readings of one row share the error of its pose: their sums tell the doubt (Liang and Zeger).
+    scores = np.sum((further * left[:, None]).reshape(*is_read.shape, -1), axis=1)
+    inflation = np.sum(scores**2) / max(further.shape[1], 1)
+    return gain / max(float(inflation), 1.0)
+
+
+def _noise_of(
+    residual: FloatArray, slopes: FloatArray, is_read: BoolArray, free: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return decay, lasting share and variance of the noise of each channel (n_channels,)."""
+    n_rows, n_channels, n_parameters = slopes.shape
+    bases, is_used = np.zeros_like(slopes), np.zeros((n_channels, n_parameters), dtype=np.bool_)
+    for channel in range(n_channels):
+        basis = orthonormal(slopes[:, channel])
+        bases[:, channel, : basis.shape[1]] = basis
+        is_used[channel, : basis.shape[1]] = True
+    pairs = np.array([(0.0, 0.0), *((d, s) for d in _DECAYS for s in _SHARES)])
+    decay, share = pairs.T[..., None]
+    columns = np.concatenate([residual[..., None], bases], axis=-1)
+    products = np.zeros((len(pairs), n_channels, n_parameters + 1, n_parameters + 1))
+    log_det = np.zeros((len(pairs), n_channels))
+    for step, log_variance in _innovations(columns, is_read, decay, share):
+        products += step[..., :, None] * step[..., None, :]
+        log_det += log_variance
+    inner = products[..., 1:, 1:] + np.eye(n_parameters) * ~is_used[:, :, None]
+    mixed = products[..., 1:, :1]
+    explained = np.sum(mixed * np.linalg.solve(inner, mixed), axis=(-2, -1))
+    freedom = is_read.sum(axis=0) - is_used.sum(axis=1)
+    variance = np.maximum(products[..., 0, 0] - explained, 1e-12) / np.maximum(freedom, 1)
+    log_det += np.linalg.slogdet(inner)[1]
+    likelihood = -0.5 * (freedom * np.log(variance) + log_det)
+    apart = np.arange(n_rows)
+    of_mean = variance * (
+        1.0 + share * (decay**apart @ (1.0 - apart / n_rows) * 2.0 - 2.0)[:, None]
+    )
+    highest = likelihood.max(axis=0)
+    is_likely = likelihood >= highest - np.minimum(highest - likelihood[0], _NOT_EXCLUDED)
+    chosen = np.argmax(np.where(is_likely, of_mean, -np.inf), axis=0)
+    chosen[freedom < _LEAST_FREEDOM] = 0
+    of_chosen = variance[chosen, np.arange(n_channels)] / free
+    return *pairs[chosen].T, np.maximum(of_chosen, 1.0)  # the sensors' noise is there in any case
+
+
+def _innovations(
+    columns: FloatArray, is_read: BoolArray, decay: FloatArray, share: FloatArray
+) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Yield what each row adds to those before it, over its deviation, and log of its variance.
+
+    Parameters
+    ----------
+    columns : array (n_rows, n_channels, n_columns)
+        0 where not read.
+    is_read : array (n_rows, n_channels)
+        What was read.
+    decay, share : array (…, n_channels)
+        Of noise of unit variance.
+    """
+    foretold, doubt = np.zeros((*share.shape, columns.shape[-1])), share
+    for row, read in zip(columns, is_read, strict=True):
+        variance = doubt + 1.0 - share
+        step = np.where(read[:, None], row - foretold, 0.0)
+        weight = np.where(read, doubt / variance, 0.0)
+        yield step / np.sqrt(variance)[..., None], np.where(read, np.log(variance), 0.0)
+        foretold = decay[..., None] * (foretold + weight[..., None] * step)
+        doubt = decay**2 * (1.0 - weight) * doubt + (1.0 - decay**2) * share
