@@ -116,7 +116,9 @@ def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
     change *= typical / fit.std
     sizes = np.abs(np.nan_to_num(change))
     row = np.argmax(sizes, axis=0)
-    singular = np.linalg.svd(np.linalg.qr(np.vstack(slopes), mode="r"), compute_uv=False)
+    singular = np.linalg.svd(
+        np.linalg.qr(slopes.reshape(-1, slopes.shape[-1]), mode="r"), compute_uv=False
+    )
     n_rows = int(np.isfinite(residual).any(axis=1).sum())
     with np.errstate(divide="ignore"):
         logarithm = np.log(singular)

@@ -84,7 +84,12 @@ def _checked(kind: _Format, rows: Rows, name: str) -> Rows:
         try:
             yield from rows
         except Exception as error:  # whatever a damaged file makes of its reader
-            refuse(name, None, f"this is no {kind.called[2:].lstrip()} that can be read: {error}")
+            what = kind.called.partition(" ")[2]
+            refuse(name, None, f"this is no {what} that can be read: {_in_a_line(error)}")
+
+
+def _in_a_line(error: Exception) -> str:
+    return " ".join(str(error).split())[:200]
 
 
 def _workbook_rows(openpyxl: Any, file: BinaryIO) -> Rows:
@@ -129,7 +134,7 @@ _FORMATS = (
 
 def is_bag(path: Path) -> bool:
     """Return whether a path is that of a bag of ROS 2, which is a folder, or of ROS 1."""
-    return path.suffix == ".bag" or (path / "metadata.yaml").is_file()
+    return (path / "metadata.yaml").is_file() or (path.suffix == ".bag" and path.is_file())
 
 
 def read_bag(path: Path, wanted: Sequence[str]) -> list[LogTable]:
@@ -161,7 +166,8 @@ def read_bag(path: Path, wanted: Sequence[str]) -> list[LogTable]:
                 cells.update(_leaves(message, connection.topic))
                 messages[connection.topic].append(cells)
     except Exception as error:  # whatever a damaged bag makes of its reader
-        refuse(str(path), None, f"this is no bag that can be read: {error}", "a bag of ROS")
+        problem = f"this is no bag that can be read: {_in_a_line(error)}"
+        refuse(str(path), None, problem, "a bag of ROS")
     if not named:
         expected = (
             f"columns such as '{topics[0] if topics else '/topic'}.field' in measurements.columns"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import random
 from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -364,3 +365,28 @@ def test_faults_of_a_bag(log: Log) -> None:
     next(path.glob("*.mcap")).write_bytes(b"nothing")
     (fault,) = faults_as(log, "run")
     assert fault.problem.startswith("this is no bag that can be read: ")
+
+
+@pytest.mark.parametrize("name", ["log.xlsx", "log.parquet"])
+def test_no_spoilt_file_escapes_as_another_error(log: Log, name: str) -> None:
+    log.read()
+    if name == "log.xlsx":
+        write_workbook(log.folder / name, cells(log))
+    else:
+        parquet.write_table(pa.table(cells(log)), log.folder / name)
+    read_as(log, name)
+    good = (log.folder / name).read_bytes()
+    rng = random.Random(3)
+    refused = 0
+    for _ in range(40):
+        raw = bytearray(good)
+        for _ in range(rng.choice([1, 3, 20])):
+            start = rng.randrange(len(raw))
+            raw[start : start + rng.choice([0, 1, 30])] = rng.randbytes(rng.choice([0, 1, 4]))
+        (log.folder / name).write_bytes(raw)
+        try:
+            log.read_config_as_it_is()
+        except InputError as error:
+            refused += 1
+            assert "\n" not in error.faults[0].problem
+    assert refused > 20
