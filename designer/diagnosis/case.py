@@ -95,6 +95,9 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     recorded = _recorded(study, measured)
     skipped = {e.key: _missing(e, recorded) or _too_few(e, measured) for e in effects}
     visible = [e for e in effects if not skipped[e.key]]
+    given = tuple(e for e in visible if e.is_among(measurements.unknown))
+    beside = [e.beside({e.id for e in given}) for e in visible if e not in given]
+    skipped |= {e.key: "is a part of what is unknown" for e in beside if not e.parameters}
     # On the machine an effect acts unseen; only wind has to be told.
     in_sight = [s for s in fixed if s.effect.on_machine is None or "wind" in s.effect.needs]
     idle = [s for s in in_sight if _missing(s.effect, recorded)]
@@ -103,8 +106,8 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         measurements,
         machine,
         measured,
-        candidates=tuple(e for e in visible if not e.is_among(measurements.unknown)),
-        given=tuple(e for e in visible if e.is_among(measurements.unknown)),
+        candidates=tuple(e for e in beside if e.parameters),
+        given=given,
         skipped=tuple((key, why) for key, why in skipped.items() if why),
         fixed=tuple(s for s in fixed if s not in idle),
         idle=tuple((s.effect.key, _missing(s.effect, recorded)) for s in idle),
@@ -130,6 +133,7 @@ def _recorded(study: Study, measured: Measured) -> frozenset[str]:
     recorded = {
         "motion": not measured.settled,
         "rotation": not study.robot.is_point_mass,
+        "pose": measured.has_poses,
         "length": not np.isnan(measured.length_m).all(),
         "tension": not np.isnan(measured.tension_N).all(),
     }

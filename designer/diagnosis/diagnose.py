@@ -138,7 +138,7 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
         foretold_before=foretell(problem, first, compared),
         foretold_after=foretell(problem, last, compared),
         not_tried=progress.left_out,
-        imbalance=imbalance_of(problem.predict.built(last), measured),
+        imbalance=imbalance_of(problem.predict.built(last), problem.predict.placed(last)),
         predicted_before=problem.predicted(first),
         calibration=calibration_of(outcome.searcher.problem, outcome.fit),
     )

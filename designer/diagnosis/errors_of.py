@@ -202,7 +202,7 @@ def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -
     true = problem.predict.true_readings(settings, problem.noise)
     built = problem.predict.built(settings)
     force = added_force_N(built, measured)
-    poses = measured.poses.part(rows)
+    poses = problem.predict.placed(settings).poses.part(rows)
     forward_statics = solve_forward(
         built.robot, built.cable, true.length_m[rows], poses, None if force is None else force[rows]
     )

@@ -139,20 +139,30 @@ def fit(
     turns = 80 if thorough or anew or not start else 12
     # Relative: the final model is told, a trial is only compared with others.
     tolerance = 1e-8 if thorough else 1e-5
+    starts = _starts(problem, effects, start, _to_start(effects, start, anew=anew))
     fits = [
         _fit_from(problem, effects, is_used, vector, turns, tolerance)
-        for vector in _starts(problem, effects, start, anew=anew)
+        for vector in _promising(problem, effects, is_used, starts)
     ]
     return min(fits, key=lambda candidate: candidate.loss)
 
 
-def _starts(
-    problem: Problem, effects: Sequence[Effect], start: Sequence[Setting], *, anew: bool
-) -> list[FloatArray]:
+def _to_start(effects: Sequence[Effect], start: Sequence[Setting], *, anew: bool) -> list[Effect]:
+    """Return the effects with several valleys to start in: those not known, or all of them."""
     keys = {s.effect.key for s in start}
     several = [e for e in effects if e.starts or e.starts_from]
-    fresh = [e for e in several if anew or e.key not in keys]
-    starts = [] if any(e.key not in keys for e in fresh) else [starting_vector(effects, start, {})]
+    return [e for e in several if anew or e.key not in keys]
+
+
+def _starts(
+    problem: Problem,
+    effects: Sequence[Effect],
+    start: Sequence[Setting],
+    fresh: Sequence[Effect],
+) -> list[FloatArray]:
+    """Return vectors to start from: in each valley of each of the fresh effects."""
+    keys = {s.effect.key for s in start}
+    starts = []
     fitted = {effect.key for effect in effects}
     for effect in fresh:
         rest_settings = [s for s in start if s.effect.key != effect.key]
@@ -161,26 +171,95 @@ def _starts(
             rest = tuple(s for s in rest_settings if s.effect.key in fitted)
             values_to_try += effect.starts_from(problem.measured, problem.residual(rest))
         starts += [starting_vector(effects, rest_settings, values) for values in values_to_try]
+    if not starts or all(e.key in keys for e in fresh):
+        starts.append(starting_vector(effects, start, {}))
     return starts
+
+
+def _promising(
+    problem: Problem, effects: Sequence[Effect], is_used: BoolArray, starts: Sequence[FloatArray]
+) -> list[FloatArray]:
+    """Return of starts the two from which one linear step leaves least, of equal ones the first."""
+    if len(starts) == 1:
+        return [*starts]
+    losses = {}
+    for vector in starts:
+        residual = problem.residual(settings_at(effects, vector))[is_used]
+        slopes = jacobian(problem, effects, vector)[is_used]
+        losses.setdefault(round(np.log(_loss_after_step(residual, slopes) + 1.0), 2), vector)
+    return [losses[loss] for loss in sorted(losses)[:2]]
 
 
 def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:
     """Return the slopes of the residual (n_rows, 2 n_cables, n_parameters)."""
-
-    def compute() -> FloatArray:
-        residual = problem.residual(settings_at(effects, vector))
-        parameters = [p for effect in effects for p in effect.parameters]
-        slopes = np.empty((*residual.shape, len(parameters)))
-        for k, p in enumerate(parameters):
-            moved = vector.copy()
-            # So short that one side will do, and far above the solver's residual.
-            moved[k] += 1e-3 * max(p.typical, 0.1 * abs(vector[k] - p.neutral))
-            residual_moved = problem.residual(settings_at(effects, moved))
-            slopes[..., k] = (residual_moved - residual) / (moved[k] - vector[k])
-        return slopes
-
     key = (problem.noise, *(effect.key for effect in effects), vector.tobytes())
-    return problem.predict.remembered_slopes(key, compute)
+    every = slice(0, len(vector))
+    return problem.predict.remembered_slopes(key, lambda: _slopes(problem, effects, vector, every))
+
+
+def _slopes(
+    problem: Problem, effects: Sequence[Effect], vector: FloatArray, places: slice
+) -> FloatArray:
+    """Return the slopes of the residual in some of the parameters, by their places."""
+    residual = problem.residual(settings_at(effects, vector))
+    parameters = [p for effect in effects for p in effect.parameters]
+    slopes = []
+    for k, p in [*enumerate(parameters)][places]:
+        moved = vector.copy()
+        # So short that one side will do, and far above the solver's residual.
+        moved[k] += 1e-3 * max(p.typical, 0.1 * abs(vector[k] - p.neutral))
+        residual_moved = problem.residual(settings_at(effects, moved))
+        slopes.append((residual_moved - residual) / (moved[k] - vector[k]))
+    return np.stack(slopes, axis=-1)
+
+
+def loss_in_reach(
+    problem: Problem,
+    effects: Sequence[Effect],
+    rows: BoolArray,
+    present: Fit,
+    effect: Effect,
+) -> float:
+    """Return the robust loss that one linear step leaves, with one more effect in the model.
+
+    The step is from the present values of the others, and from where a fit would start with the
+    effect: the best of its starts. The score test does so from where it does nothing (Rao, Proc.
+    Cambridge Philos. Soc. 44, 1948).
+
+    Parameters
+    ----------
+    problem, rows
+        As for `fit`.
+    effects : sequence of Effect
+        All of the model with the effect, in the order in which they act.
+    present : Fit
+        The model without it.
+    effect : Effect
+        The one that is added.
+    """
+    is_used = rows[:, None] & ~np.isnan(problem.measured.readings)
+    others = [s.effect for s in present.settings]
+    known = [jacobian(problem, others, present.vector)[is_used]] if others else []
+    losses = []
+    for vector in _starts(problem, effects, present.settings, [effect]):
+        settings = settings_at(effects, vector)
+        (own,) = (places for s, places in with_places(settings) if s.effect.key == effect.key)
+        slopes = _slopes(problem, effects, vector, own)[is_used]
+        residual = problem.residual(settings)[is_used]
+        losses.append(_loss_after_step(residual, np.hstack([*known, slopes])))
+    return min(losses)
+
+
+def _loss_after_step(residual: FloatArray, slopes: FloatArray) -> float:
+    """Return the least robust loss of a residual (n,) that is linear in parameters (n, p)."""
+    unit = slopes / np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
+    rest = residual
+    for _ in range(8):  # weights anew, which settle to a few per cent by then
+        weight = np.minimum(1.0, HUBER / np.maximum(np.abs(rest), HUBER))
+        weighted = unit * weight[:, None]
+        square = weighted.T @ unit + 1e-10 * np.eye(unit.shape[1])
+        rest = residual - unit @ np.linalg.solve(square, weighted.T @ residual)
+    return float(huber(rest).sum())
 
 
 def _fit_from(

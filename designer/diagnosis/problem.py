@@ -37,12 +37,12 @@ def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None
     """
     force = None if measured is None else added_force_N(machine, measured)
     if machine.robot.is_redundant:
-        length, tension, span = solve_taut(machine.robot, poses, machine.cable, force)
+        length, tension, span = solve_taut(machine.robot, poses, machine.cables, force)
         return Readings(length - straightened_m(machine, tension, span), tension)
     if machine.robot.is_square:  # hangs in the way that it was tightened to, better ones or not
-        statics = solve_sagging(machine.robot, poses, machine.cable, force, seeks_better=False)
+        statics = solve_sagging(machine.robot, poses, machine.cables, force, seeks_better=False)
     else:
-        statics = solve_underactuated(machine.robot, poses, machine.cable, force)
+        statics = solve_underactuated(machine.robot, poses, machine.cables, force)
     length, tension = statics.length_m, statics.exit_tension_N
     if machine.flexural_rigidity_N_m2:
         span = statics.geometry().horizontal_distance_m
@@ -58,7 +58,7 @@ def imbalance_of(machine: Machine, measured: Measured) -> FloatArray | None:
     if machine.robot.has_enough_cables:
         return None
     force = added_force_N(machine, measured)
-    return imbalance(solve_underactuated(machine.robot, measured.poses, machine.cable, force))
+    return imbalance(solve_underactuated(machine.robot, measured.poses, machine.cables, force))
 
 
 def added_force_N(machine: Machine, measured: Measured) -> FloatArray | None:
@@ -89,7 +89,7 @@ def straightened_m(machine: Machine, tension_N: FloatArray, span_m: FloatArray) 
         return np.zeros_like(tension_N)
     # Odd in the rigidity, so that its slope at zero can be taken from both sides.
     layer = np.sign(rigidity) * np.sqrt(abs(rigidity) / tension_N)
-    load = machine.cable.weight_N_per_m * span_m  # w_⊥ c
+    load = machine.cables.weight_N_per_m * span_m  # w_⊥ c
     return np.asarray(load**2 * 3.0 * layer / (8.0 * tension_N**2))
 
 
@@ -153,7 +153,7 @@ def balanced_readings(
     statics = solve_internal(
         machine.robot,
         measured.poses,
-        machine.cable,
+        machine.cables,
         length_m,
         tension_N,
         (noise.length_m * guess.distrust[0], noise.tension_N * guess.distrust[1]),
@@ -213,6 +213,14 @@ class Predictor:
         """Return the machine with the declared effects and these."""
         return as_built(self.machine, self._all(settings))
 
+    def placed(self, settings: Sequence[Setting]) -> Measured:
+        """Return the rows in the poses that the platform had, as these effects have it."""
+        poses = self.measured.poses
+        for setting in self._all(settings):
+            if setting.effect.on_poses is not None:
+                poses = setting.effect.on_poses(poses, setting.values)
+        return replace(self.measured, poses=poses)
+
     def _all(self, settings: Sequence[Setting]) -> list[Setting]:
         """Return the effects that show in these rows, in the order in which they act."""
         all_settings = (*self.fixed, *settings)
@@ -237,7 +245,7 @@ class Predictor:
         if self.spare_cables:
             return self._remembered(settings, noise, self._with_forces)[1]
         # Effects on readings leave the machine alone, so that their slopes cost no statics.
-        bodily = [s for s in settings if s.effect.on_machine is not None]
+        bodily = [s for s in settings if s.effect.on_readings is None]
         return self._shown(self._remembered(bodily, noise, self._physical)[1], settings)
 
     def surroundings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
@@ -257,7 +265,8 @@ class Predictor:
             true = self._remembered(settings, noise, self._with_forces)[0]
         else:
             limp = replace(self.built(settings), flexural_rigidity_N_m2=0.0)
-            true = readings_of(limp, self.measured.poses, self.measured)
+            placed = self.placed(settings)
+            true = readings_of(limp, placed.poses, placed)
         measured = self.measured.readings
         return Readings(*np.hsplit(measured - displayed.stacked + true.stacked, 2))
 
@@ -285,7 +294,8 @@ class Predictor:
         return self._slopes[key]
 
     def _physical(self, settings: Sequence[Setting], _: Noise) -> tuple[Readings, Readings]:
-        readings = readings_of(self.built(settings), self.measured.poses, self.measured)
+        placed = self.placed(settings)
+        readings = readings_of(self.built(settings), placed.poses, placed)
         return readings, readings
 
     def _with_forces(self, settings: Sequence[Setting], noise: Noise) -> tuple[Readings, Readings]:
@@ -317,7 +327,7 @@ class Predictor:
 
         What they add depends on the internal forces in turn, though little.
         """
-        machine, measured = self.built(settings), self.measured
+        machine, measured = self.built(settings), self.placed(settings)
         nothing = Guess(np.zeros_like(measured.readings))
         guess = self._guesses.get(kind_of(settings, noise), nothing)
         for _ in range(_MOST_TURNS):
@@ -329,9 +339,10 @@ class Predictor:
         return guess, true, displayed
 
     def _shown(self, readings: Readings, settings: Sequence[Setting]) -> Readings:
+        placed = self.placed(settings)
         for setting in self._all(settings):
             if setting.effect.on_readings is not None:
-                readings = setting.effect.on_readings(readings, setting.values, self.measured)
+                readings = setting.effect.on_readings(readings, setting.values, placed)
         return readings
 
 

@@ -43,7 +43,7 @@ class Estimate:
 
 
 def _effect(effect: Effect) -> dict[str, object]:
-    return {**effect.identified(), "summary": effect.summary}
+    return {**effect.identified(), "summary": effect.summary, "cause": effect.cause}
 
 
 def _rivals(keys: Sequence[str]) -> dict[str, object]:

@@ -5,14 +5,14 @@ And where to measure next, so that rivals part.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.drift import beside_drift
-from designer.diagnosis.fit import Fit, fit, huber
+from designer.diagnosis.fit import Fit, fit, huber, loss_in_reach
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import SIGNIFICANCE, folds
 from designer.effects.effect import Effect, Setting
@@ -25,6 +25,11 @@ RIVAL_MARGIN = 9.0
 """Difference of penalised loss below which two effects count as equally good."""
 _PENALTY = 2.0
 """For each parameter, in units of the variance that is left: Akaike's information criterion."""
+_REACH = 0.25
+"""Share of the best promise below which a candidate is not fitted: a linear step foretells the gain
+of a fit to some tens of per cent."""
+_FEWEST = 5
+"""Candidates that are fitted, whatever they promise: a report shows them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,20 +82,26 @@ class Step:
     Parameters
     ----------
     trials : tuple of EffectTrial
-        All candidates, best first.
+        All candidates that were fitted, best first.
     added : Effect or None
         The one that earned its place.
     is_complete : bool
         Whether there was time to try all.
+    passed_over : mapping of str to float
+        Candidates that were not fitted, with the gain that one linear step promised, best first.
     """
 
     trials: tuple[EffectTrial, ...]
     added: Effect | None
     is_complete: bool = True
+    passed_over: Mapping[str, float] = field(default_factory=dict)
 
 
 def _simplest(trials: Sequence[EffectTrial]) -> EffectTrial | None:
-    """Of the best that earn their place, and those nearly as good, the one with fewest numbers."""
+    """Of the best that earn their place, and those nearly as good, the one to name.
+
+    An error of setting up before physics, and of either the one with fewest numbers.
+    """
     good = [t for t in trials if t.may_be_added]
     scores = [t.score(_best_variance(good)) for t in good]
     close = [
@@ -98,7 +109,11 @@ def _simplest(trials: Sequence[EffectTrial]) -> EffectTrial | None:
         for t, score in zip(good, scores, strict=True)
         if score > max(scores) - RIVAL_MARGIN * t.fit.inflation[t.effect.key]
     ]
-    return min(close, key=lambda t: len(t.effect.parameters), default=None)
+    return min(
+        close,
+        key=lambda t: (t.effect.cause != "setting_up", len(t.effect.parameters)),
+        default=None,
+    )
 
 
 def _chance(gain: float, effect: Effect, looks: int) -> float:
@@ -152,11 +167,12 @@ class Searcher:
         visited: list[set[Effect]] = []
         while set(effects) not in visited:
             visited.append(set(effects))
-            trials = self.trials(effects, present, f"round {len(steps) + 1}")
+            trials, passed_over = self.trials(effects, present, f"round {len(steps) + 1}")
             is_over = self.progress.is_over
             best = None if is_over else _simplest(trials)
             if trials:
-                steps.append(Step(tuple(trials), best.effect if best else None, not is_over))
+                added = best.effect if best else None
+                steps.append(Step(tuple(trials), added, not is_over, passed_over))
             # More that a machine lacks at once are not to be told apart by one log.
             if best is None or len(effects) == 5:
                 break
@@ -182,28 +198,84 @@ class Searcher:
         settings = start.settings if start else ()
         return fit(self.problem, effects, self.rows, settings, thorough=thorough, anew=anew)
 
-    def trials(self, effects: Sequence[Effect], present: Fit, part: str) -> list[EffectTrial]:
-        """Try every other candidate in addition, best first."""
-        outsiders = self._others(effects)
-        trials: list[EffectTrial] = []
-        for effect in self.progress.each(part, outsiders):
+    def trials(
+        self, effects: Sequence[Effect], present: Fit, part: str
+    ) -> tuple[list[EffectTrial], dict[str, float]]:
+        """Try the other candidates in addition, best first, and return those passed over.
+
+        Fitted are those of which one linear step promises a good part of what it promises of the
+        best; where none of them earns its place, all whose promise may be no accident.
+        """
+        promised = self._promised(effects, present, part)
+        looks, least = len(promised), _REACH * max(promised.values(), default=0.0)
+        clear = [e for e in promised if _chance(promised[e] / _REACH, e, looks) < SIGNIFICANCE]
+        near = {e for e in clear if promised[e] >= least}
+        first = [e for k, e in enumerate(promised) if k < _FEWEST or e in near]
+        trials = self._tried(effects, first, present, part, looks)
+        trials = self._validated(effects, present, trials, looks)
+        rest = without([*promised], *(e.key for e in first))
+        if not (self.progress.is_over or any(trial.may_be_added for trial in trials)):
+            further = [e for e in rest if e in clear]
+            if further:
+                more = self._tried(effects, further, present, f"{part}, further", looks)
+                trials = self._validated(effects, present, [*trials, *more], looks)
+                rest = without(rest, *(e.key for e in further))
+        return trials, {e.key: promised[e] for e in rest}
+
+    def _promised(self, effects: Sequence[Effect], present: Fit, part: str) -> dict[Effect, float]:
+        """Return the gain that one linear step promises of each other candidate, best first.
+
+        Of those that come too late, none.
+        """
+        losses = {}
+        for effect in self._others(effects):
+            self.progress(f"{part}: {effect.key} at first sight")
+            is_late = self.progress.is_over
+            losses[effect] = present.loss if is_late else self._in_reach(effects, effect, present)
+        least = min(losses.values(), default=0.0)
+        variance = max(1.0, least / max(present.n_data - len(present.vector), 1))
+        gains = {effect: (present.loss - loss) / variance for effect, loss in losses.items()}
+        return dict(sorted(gains.items(), key=lambda e: _PENALTY * len(e[0].parameters) - e[1]))
+
+    def _in_reach(self, effects: Sequence[Effect], effect: Effect, present: Fit) -> float:
+        every = self._sorted([*self.given, *effects, effect])
+        return loss_in_reach(self.problem, every, self.rows, present, effect)
+
+    def _tried(
+        self,
+        effects: Sequence[Effect],
+        candidates: Sequence[Effect],
+        present: Fit,
+        part: str,
+        looks: int,
+    ) -> list[EffectTrial]:
+        """Fit each of the candidates in addition; ``looks`` is how many there are in all."""
+        trials = []
+        for effect in self.progress.each(part, candidates):
             model = self.fit([*effects, effect], present, anew=True)
             gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
-            chance = _chance(gain, effect, len(outsiders))
+            chance = _chance(gain, effect, looks)
             trials.append(EffectTrial(effect, model, gain, chance, heldout_gain=float("nan")))
+        return trials
+
+    def _validated(
+        self, effects: Sequence[Effect], present: Fit, trials: Sequence[EffectTrial], looks: int
+    ) -> list[EffectTrial]:
+        """Cross-validate trials from the best down, until one earns its place; best first."""
         variance = _best_variance(trials)
-        trials.sort(key=lambda trial: -trial.score(variance))
         answer: list[EffectTrial] = []
-        for trial in trials:  # cross-validated from the best down, until one earns its place
+        ordered = sorted(trials, key=lambda trial: -trial.score(variance))
+        for count, trial in enumerate(ordered):
             # Three are, whatever comes of it: a report shows them.
             settled = len(answer) >= 3 and any(t.may_be_added for t in answer)
             if self.progress.is_over and not settled and trial.chance < SIGNIFICANCE:
                 self.progress.leave_out(f"{trial.effect.key} and below on rows not seen")
-                return answer + trials[len(answer) :]
-            if settled or trial.chance >= SIGNIFICANCE:  # needs no proof
+                return answer + ordered[count:]
+            is_known = not np.isnan(trial.heldout_gain)
+            if settled or is_known or trial.chance >= SIGNIFICANCE:  # needs no proof
                 answer.append(trial)
                 continue
-            tested = self._beside_drift(trial, present, len(outsiders))
+            tested = self._beside_drift(trial, present, looks)
             if tested.chance < SIGNIFICANCE:
                 gain = self._unseen_loss(effects, trial.fit)
                 gain -= self._unseen_loss([*effects, trial.effect], trial.fit)
@@ -226,15 +298,22 @@ class Searcher:
         Each is fitted from the present model, and from where the first and the last round left
         it. It stays a rival if the fitted rows suit it about as well, with a penalty for its
         parameters or without one; or if it predicted unseen rows at least half as well when
-        ``effect`` was added, and predicts them about as well in its place.
+        ``effect`` was added, and predicts them about as well in its place. What at first sight
+        does less than half of what ``effect`` does is not fitted.
         """
         rest = without(effects, effect.key)
         scale = present.variance * present.inflation[effect.key]
         added = [step for step in steps if step.added is not None and step.added.key == effect.key]
         gains = {t.effect.key: t.heldout_gain for step in added[-1:] for t in step.trials}
         good = {key for key, gain in gains.items() if gain >= 0.5 * gains[effect.key]}
+        lost = self.fit(rest, present)
+        far = present.loss + max(0.5 * (lost.loss - present.loss), 3.0 * RIVAL_MARGIN * scale)
         answer = []
         for rival in self.progress.each(f"rivals of {effect.key}", self._others(effects)):
+            if effect.is_part_of(rival):  # which can do all that it does
+                continue
+            if rival.key not in good and self._in_reach(rest, rival, lost) > far:
+                continue
             trials = [t.fit for step in steps for t in step.trials if t.effect.key == rival.key]
             fits = [self.fit([*rest, rival], present, anew=True)]
             last = dict.fromkeys([*trials[:1], *trials[-1:]])

@@ -32,5 +32,6 @@ EFFECT = Effect(
         Parameter("offset_s", TIME, Size(0.05, bounds=(-60.0, 60.0), plausible=(-5.0, 5.0))),
     ),
     on_readings=_change,
+    cause="setting_up",
     needs=frozenset({"time", "motion", "length"}),
 )

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from designer.arrays import FloatArray
 from designer.effects.effect import Effect, Parameter, Readings, Size, Values
 from designer.model.measured_data import Measured
 from designer.units import NUMBER, TIME
@@ -14,11 +15,15 @@ _STRAIN = Size(1e-4, bounds=(-0.05, 0.05), plausible=(0.0, 0.01))
 _ONSET = Size(50.0, bounds=(0.1, 1e7), plausible=(1.0, 1e6))
 
 
-def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
+def growth(values: Values, measured: Measured) -> FloatArray:
+    """Return length over length at the start of each row (n_rows,)."""
     assert measured.time_s is not None
     decades = np.log10(1.0 + np.maximum(measured.time_s, 0.0) / values["onset_s"])
-    growth = 1.0 + values["strain_per_decade"] * decades
-    return replace(readings, length_m=readings.length_m / growth[:, None])
+    return np.asarray(1.0 + values["strain_per_decade"] * decades)
+
+
+def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
+    return replace(readings, length_m=readings.length_m / growth(values, measured)[:, None])
 
 
 EFFECT = Effect(

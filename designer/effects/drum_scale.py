@@ -22,5 +22,6 @@ EFFECT = Effect(
     source="definition",
     parameters=(Parameter("scale", NUMBER, _SIZE, neutral=1.0, above=0.0),),
     on_readings=_change,
+    cause="setting_up",
     needs=frozenset({"length"}),
 )

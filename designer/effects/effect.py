@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import Literal
 
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
+from designer.model.robot import Poses
 from designer.statics.geometry import cable_geometry
 from designer.units import Dimension
 
@@ -60,6 +62,11 @@ class Size:
     neutral: float | None = None
 
 
+def any_machine(machine: Machine) -> bool:
+    """Tell that a machine may have an effect, whatever it is."""
+    return True
+
+
 @dataclass(frozen=True, slots=True)
 class Parameter:
     """One number of an effect.
@@ -79,6 +86,10 @@ class Parameter:
         Whether a config may leave it out, which makes it neutral.
     above, at_least : float or None
         Limits beyond which it has no meaning.
+    can_have : callable
+        Tells whether it means anything on a machine; where not, it is left out.
+    part_of : tuple of str
+        Ids of effects with the same number: beside those, it is left out.
     """
 
     name: str
@@ -88,6 +99,8 @@ class Parameter:
     is_optional: bool = False
     above: float | None = None
     at_least: float | None = None
+    can_have: Callable[[Machine], bool] = any_machine
+    part_of: tuple[str, ...] = ()
 
     @property
     def label(self) -> str:
@@ -148,22 +161,22 @@ NEEDS: Mapping[str, str] = {
     "tension": "measured tensions",
     "length": "measured lengths",
     "rotation": "a platform that can turn",
+    "pose": "measured poses",
 }
 """What an effect may need in the data to be seen, in words."""
 
-ALL_ANCHORS = "anchors"
-"""What ``measurements.unknown`` calls the offsets of all exit points together."""
+ALL_ANCHORS, ALL_ATTACHMENTS = "anchors", "attachments"
+"""What ``measurements.unknown`` calls the offsets of all exit points, or attachments, together."""
 
 MachineChange = Callable[..., Machine]
 """From a machine and `Values` to the machine with the effect."""
 ReadingChange = Callable[..., Readings]
 """From `Readings`, `Values` and `Measured` to the readings with the effect."""
+PoseChange = Callable[..., Poses]
+"""From poses as they were measured and `Values` to those that the robot truly had."""
+Cause = Literal["physics", "setting_up"]
+"""What the machine does, or an error of frames, points, scales and clocks in setting it up."""
 StartsFrom = Callable[[Measured, FloatArray], Sequence[Values]]
-
-
-def any_machine(machine: Machine) -> bool:
-    """Tell that a machine may have an effect, whatever it is."""
-    return True
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -182,9 +195,13 @@ class Effect:
         Where the law comes from.
     parameters : tuple of Parameter
         Its numbers.
-    on_machine, on_readings : callable or None
+    on_machine, on_readings, on_poses : callable or None
         Exactly one of them: ``on_machine(machine, values)`` returns the changed machine,
-        ``on_readings(readings, values, measured)`` the changed readings.
+        ``on_readings(readings, values, measured)`` the changed readings, ``on_poses(poses,
+        values)`` the poses of the platform where those are as they were measured.
+    cause : str
+        ``setting_up`` where it is no physics but an error in setting up the measurements, which is
+        to be thought of first; see `Cause`.
     needs : frozenset of str
         What the data must have, of `NEEDS`.
     takes_cable : bool
@@ -218,6 +235,8 @@ class Effect:
     parameters: tuple[Parameter, ...]
     on_machine: MachineChange | None = None
     on_readings: ReadingChange | None = None
+    on_poses: PoseChange | None = None
+    cause: Cause = "physics"
     needs: frozenset[str] = frozenset()
     takes_cable: bool = False
     takes_machine: bool = False
@@ -257,12 +276,22 @@ class Effect:
         """Return the parameters on a robot with so many cables."""
         return tuple(own for parameter in self.parameters for own in parameter.of_cables(n_cables))
 
+    def is_part_of(self, effect: Effect) -> bool:
+        """Tell whether another effect has all of its numbers."""
+        return all(effect.id in p.part_of for p in self.parameters)
+
+    def beside(self, ids: Collection[str]) -> Effect:
+        """Return it without the numbers that effects of these ids have as well."""
+        own = tuple(p for p in self.parameters if not set(p.part_of) & set(ids))
+        return replace(self, parameters=own)
+
     def on(self, machine: Machine) -> list[Effect]:
         """Return what a machine may have of it: the effect, one for each cable, or none."""
         if not self.can_have(machine):
             return []
         n_cables = machine.robot.n_cables
-        effect = replace(self, parameters=tuple(p.sized(machine) for p in self.parameters))
+        sized = tuple(p.sized(machine) for p in self.parameters if p.can_have(machine))
+        effect = replace(self, parameters=sized)
         effect = replace(effect, parameters=effect.parameters_for(n_cables))
         if self.takes_machine:
             effect = effect._given(machine=machine)
@@ -278,6 +307,7 @@ class Effect:
             self,
             on_machine=self.on_machine and partial(self.on_machine, **more),
             on_readings=self.on_readings and partial(self.on_readings, **more),
+            on_poses=self.on_poses and partial(self.on_poses, **more),
         )
 
 
@@ -300,6 +330,13 @@ def as_built(machine: Machine, settings: Sequence[Setting]) -> Machine:
 def per_cable(values: Values, name: str, n_cables: int) -> FloatArray:
     """Return what a parameter such as ``offset_{cable}_m`` is for each cable (n_cables,)."""
     return np.array([values[name.format(cable=cable)] for cable in range(1, n_cables + 1)])
+
+
+def of_one(machine: Machine, shares: FloatArray | None, cable: int, scale: float) -> FloatArray:
+    """Return shares of all cables (n_cables,), ones before, with that of one cable scaled."""
+    scaled = np.ones(machine.robot.n_cables) if shares is None else np.array(shares)
+    scaled[cable - 1] *= scale
+    return scaled
 
 
 def frame_size_m(machine: Machine) -> float:
@@ -332,9 +369,9 @@ def pull_of(machine: Machine, measured: Measured, tension_N: FloatArray) -> Pull
     geometry = cable_geometry(machine.robot, measured.poses)
     across = np.maximum(geometry.horizontal_distance_m, 1e-9)
     slope = geometry.drop_m / across
-    half = 0.5 * machine.cable.weight_N_per_m * geometry.chord_m
+    half = 0.5 * machine.cables.weight_N_per_m * geometry.chord_m
     square, mixed = 1.0 + slope**2, slope * half
     inside = np.maximum(mixed**2 - square * (half**2 - tension_N**2), 0.0)
     level = np.maximum((np.sqrt(inside) - mixed) / square, 0.0)
-    drop = 0.5 * machine.cable.weight_N_per_m * slope * across
+    drop = 0.5 * machine.cables.weight_N_per_m * slope * across
     return Pull(level, np.maximum(tension_N - drop, 0.0))

@@ -23,6 +23,7 @@ EFFECT = Effect(
     source="definition",
     parameters=(Parameter("offset_{cable}_m", LENGTH, _SIZE, is_optional=True),),
     on_readings=_change,
+    cause="setting_up",
     needs=frozenset({"length"}),
     shifts_lengths=True,
 )

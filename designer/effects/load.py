@@ -6,24 +6,34 @@ import math
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
 import numpy as np
 
 from designer.arrays import frozen_array
-from designer.effects.effect import ALL_ANCHORS, NEEDS, Effect, Parameter, Readings, Size, Values
+from designer.effects.effect import (
+    ALL_ANCHORS,
+    ALL_ATTACHMENTS,
+    NEEDS,
+    Cause,
+    Effect,
+    Parameter,
+    Readings,
+    Size,
+    Values,
+)
 from designer.effects.registry import KnownEffects
 from designer.errors import EffectError, described, one_line
 from designer.model.cable import Cable
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.model.measurements import POSES
-from designer.model.robot import Platform, Robot
+from designer.model.robot import Platform, Poses, Robot
 from designer.plugins.find import OWN_NAMES, Offer, Plugins, ask
 from designer.plugins.guard import attempt
 from designer.units import Dimension, QuantityError, read_quantity
 
-RESERVED_IDS = frozenset({ALL_ANCHORS, POSES, "cable"})
+RESERVED_IDS = frozenset({ALL_ANCHORS, ALL_ATTACHMENTS, POSES, "cable"})
 """Words of the config that stand where an id or a parameter may stand."""
 
 _ID = re.compile(r"[a-z][a-z0-9_]{0,59}")
@@ -62,8 +72,10 @@ def _flaws_of_record(effect: Effect) -> Iterator[str]:
     names = [parameter.name for parameter in effect.parameters_for(3)]
     if len(set(names)) < len(names):
         yield "two of its parameters have one name"
-    if callable(effect.on_machine) == callable(effect.on_readings):
-        yield "it acts on both machine and readings or on none (expected one of them)"
+    if sum(map(callable, (effect.on_machine, effect.on_readings, effect.on_poses))) != 1:
+        yield "it acts on several of machine, readings and poses or on none (expected one of them)"
+    if effect.cause not in get_args(Cause):
+        yield f"its cause is {effect.cause!r} (expected {' or '.join(get_args(Cause))})"
     for start in effect.starts:
         if not start.keys() <= set(names) or not all(map(math.isfinite, start.values())):
             yield f"it starts from {dict(start)} (expected finite values of its parameters)"
@@ -147,6 +159,13 @@ def guarded(effect: Effect, label: str) -> Effect:
             raise fail(problem)
         return changed
 
+    def change_poses(poses: Poses, values: Values, **more: Any) -> Poses:
+        assert effect.on_poses is not None
+        changed = attempt(effect.on_poses, poses, values, **more)
+        if not isinstance(changed, Poses) or changed.shape != poses.shape:
+            raise fail(f"it returned {type(changed).__name__}, not as many Poses")
+        return changed
+
     def sized(parameter: Parameter) -> Parameter:
         if isinstance(parameter.size, Size):
             return parameter
@@ -162,6 +181,7 @@ def guarded(effect: Effect, label: str) -> Effect:
         effect,
         on_machine=effect.on_machine and change_machine,
         on_readings=effect.on_readings and change_readings,
+        on_poses=effect.on_poses and change_poses,
         can_have=lambda machine: bool(attempt(effect.can_have, machine)),
         parameters=tuple(sized(parameter) for parameter in effect.parameters),
     )

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from designer.model.cable import Cable
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.model.cable import Cable, Cables
 from designer.model.robot import Robot
 
 
@@ -46,6 +49,9 @@ class Machine:
         As the study declares them.
     late_load_kg, late_load_from_s : float
         Mass that is on the platform from a time on [kg], [s]; no design has it.
+    relative_mass, relative_stiffness : array (n_cables,) or None
+        Mass per length and EA of each cable over those of ``cable``; None where all are alike. No
+        design has them.
     """
 
     robot: Robot
@@ -55,3 +61,25 @@ class Machine:
     surroundings: Surroundings = TEMPERATE
     late_load_kg: float = 0.0
     late_load_from_s: float = 0.0
+    relative_mass: FloatArray | None = None
+    relative_stiffness: FloatArray | None = None
+
+    @property
+    def cables(self) -> Cable | Cables:
+        """The cable that is on all winches, or what is on each where they differ."""
+        if self.relative_mass is None and self.relative_stiffness is None:
+            return self.cable
+        mass, stiffness = (
+            np.ones(self.robot.n_cables) if share is None else share
+            for share in (self.relative_mass, self.relative_stiffness)
+        )
+        return Cables(
+            [
+                replace(
+                    self.cable,
+                    linear_density_kg_per_m=self.cable.linear_density_kg_per_m * m,
+                    axial_stiffness_N=self.cable.axial_stiffness_N * s,
+                )
+                for m, s in zip(mass.tolist(), stiffness.tolist(), strict=True)
+            ]
+        )

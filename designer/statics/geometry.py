@@ -8,7 +8,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.kernel.calling import CableFigures, Situation, plain, situation_of
-from designer.model.cable import Cable
+from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 
 
@@ -68,8 +68,8 @@ def upright_situation(
     return situation_of(robot, upright_poses(robot, poses), exit_points_m, force)
 
 
-def one_cable(robot: Robot, cable: Cable, least_tension_N: float = 0.0) -> CableFigures:
-    """Return what kernels are told of one cable for all exit points, weights per length [N/m]."""
+def one_cable(robot: Robot, cable: Cable | Cables, least_tension_N: float = 0.0) -> CableFigures:
+    """Return what kernels are told of the cables, weights per length [N/m]."""
     ones, weight = np.ones(robot.n_cables), cable.weight_N_per_m
     kappa = plain(weight / cable.axial_stiffness_N * ones)
     return CableFigures(kappa, plain(weight * ones), plain(np.inf * ones), least_tension_N)

@@ -12,7 +12,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, require_shape
 from designer.kernel.calling import plain
-from designer.model.cable import Cable
+from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.statics.geometry import cable_geometry, one_cable, upright_situation
@@ -29,7 +29,7 @@ _SPREAD = 1.0
 def solve_internal(
     robot: Robot,
     poses: Poses,
-    cable: Cable,
+    cable: Cable | Cables,
     length_m: FloatArray,
     tension_N: FloatArray,
     noise: tuple[float, float],

@@ -337,13 +337,13 @@ def statics_of(
 def statics_with(
     robot: Robot,
     poses: Poses,
-    cable: Cable,
+    cable: Cable | Cables,
     run: PulleyRun,
     verdict: VerdictArray,
     lengths_and_forces: FloatArray,
     force_N: FloatArray | None,
 ) -> Statics:
-    """Return the statics of poses (n_poses,) with one cable for all.
+    """Return the statics of poses (n_poses,) with one cable for all, or `Cables`.
 
     ``lengths_and_forces`` are free lengths [m] and forces x and z at the platform [N],
     (3, n_poses, n_cables); NaN unless solved.

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.model.cable import Cable
+from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.statics.geometry import one_cable, upright_situation
 from designer.statics.pulleys import straight_run
@@ -22,7 +22,7 @@ _REGULAR = 1e-4
 
 
 def solve_taut(
-    robot: Robot, poses: Poses, cable: Cable, force_N: FloatArray | None = None
+    robot: Robot, poses: Poses, cable: Cable | Cables, force_N: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return unstrained lengths [m], upper tensions [N] and horizontal distances [m].
 

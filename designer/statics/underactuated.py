@@ -22,7 +22,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.kernel.calling import plain
-from designer.model.cable import Cable
+from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.statics.geometry import centre_of_mass_arm_m, one_cable, upright_situation
@@ -36,7 +36,7 @@ _LONGEST = 8.0
 
 
 def solve_underactuated(
-    robot: Robot, poses: Poses, cable: Cable, force_N: FloatArray | None = None
+    robot: Robot, poses: Poses, cable: Cable | Cables, force_N: FloatArray | None = None
 ) -> Statics:
     """Return lengths and tensions of poses (n_poses,) with the least of balance left.
 

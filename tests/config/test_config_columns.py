@@ -156,7 +156,12 @@ def test_all_that_may_be_unknown(valid: str, study_of: StudyOf) -> None:
     ("unknown", "place", "problem", "expected"),
     [
         ("[creep, anchor]", "[1]", "'anchor' is not known", "did you mean 'anchors'?"),
-        ("[length]", "[0]", "'length' is not known", "anchors, poses, or an effect: anchor_offset"),
+        (
+            "[length]",
+            "[0]",
+            "'length' is not known",
+            "anchors, attachments, poses, or an effect: pose_shift",
+        ),
         ("[5]", "[0]", "5 is not a text", "a text"),
         ("anchors", "", "'anchors' is not a list", "a list"),
         ("[creep, creep]", "[1]", "'creep' is given twice", "once"),

@@ -91,7 +91,7 @@ def test_entries_show_effects_as_given_and_in_SI(valid: str, study_of: StudyOf) 
 # what the section holds, and the fault: field, problem, expected
 MISTAKES = [
     ("creap: {}", "creap", "unknown effect 'creap'", "did you mean 'creep'?"),
-    ("pulley: {}", "pulley", "unknown effect", "one of anchor_offset, base_tilt"),
+    ("pulley: {}", "pulley", "unknown effect", "one of pose_shift, pose_scale"),
     ("Creep: {}", "Creep", "unknown effect", "did you mean 'creep'?"),
     ("pulley_radius: 0.1", "pulley_radius", "0.1 is not a mapping", "a mapping with radius_m"),
     ("pulley_radius:", "pulley_radius", "an empty value is not", "a mapping with radius_m"),

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from designer.diagnosis.problem import readings_of as foretold
 from designer.effects.effect import Effect, Readings, frame_size_m
 from designer.effects.registry import SHIPPED
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
@@ -248,3 +249,89 @@ def test_a_turn_pays_out_cable_at_the_largest_gain_of_a_drum(machine):
     """A fit tries no gain at which a turn would pay out nothing within the frame."""
     (gain,) = (p for p in effect_of(machine, "drum_layering").parameters if "gain" in p.name)
     assert 0.0 < gain.bounds[1] * frame_size_m(machine) < 1.0
+
+
+def poses_with(machine: Machine, poses: Poses, name: str, **values: float) -> Poses:
+    effect = effect_of(machine, name)
+    assert effect.on_poses is not None
+    return effect.on_poses(poses, with_values(effect, **values))
+
+
+def test_poses_are_taken_back_to_the_robots_frame(machine, six_cable_robot):
+    """What a camera sees that is shifted, turned and scaled, told by points that it looks at."""
+    seen = Poses.at(POSITION_M)
+    back = poses_with(machine, seen, "pose_shift", x_m=0.1, z_m=-0.2)
+    assert back.position_m == pytest.approx(POSITION_M - [0.1, 0.0, -0.2], rel=1e-15)
+    back = poses_with(machine, seen, "pose_scale", scale=1.01)
+    assert back.position_m == pytest.approx(POSITION_M / 1.01, rel=1e-15)
+    robot = Machine(six_cable_robot, CABLE)
+    middle = six_cable_robot.exit_points_m.mean(axis=0)
+    quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    true = Poses.at(np.column_stack([POSITION_M, np.full((3, 3), 0.1)]))
+    seen_m = middle + 1.1 * (true.position_m - middle) @ quarter.T + [0.1, 0.2, 0.3]
+    seen = Poses(seen_m, quarter @ true.rotation)
+    frame = {"x_m": 0.1, "y_m": 0.2, "z_m": 0.3, "rz_rad": math.pi / 2, "scale": 1.1}
+    back = poses_with(robot, seen, "pose_frame", **frame)
+    assert back.position_m == pytest.approx(true.position_m, rel=1e-12)
+    assert back.rotation == pytest.approx(true.rotation, abs=1e-12)
+
+
+def test_a_planar_robot_is_shifted_in_its_plane(machine):
+    """Across the plane nothing is told: no number where an axis is across, none of it elsewhere."""
+    flat = replace(machine.robot, exit_points_m=EXIT_POINTS_M * [1.0, 0.0, 1.0], is_planar=True)
+    names = [p.name for p in effect_of(replace(machine, robot=flat), "pose_shift").parameters]
+    assert names == ["x_m", "z_m"]
+    slanting = EXIT_POINTS_M @ [[1.0, 1.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+    slanting_machine = replace(machine, robot=replace(flat, exit_points_m=slanting))
+    moved = poses_with(slanting_machine, Poses.at(np.zeros((1, 3))), "pose_shift", x_m=0.2)
+    assert moved.position_m == pytest.approx(np.array([[-0.1, -0.1, 0.0]]), abs=1e-12)
+    assert not SHIPPED.by_id["pose_frame"].on(slanting_machine)
+
+
+def test_attachment_offset_is_in_the_platforms_frame(machine, six_cable_robot):
+    body = Machine(six_cable_robot, CABLE)
+    moved = machine_with(body, "attachment_offset", 3, x_m=0.01, y_m=0.02, z_m=-0.03)
+    change = moved.robot.attachments_m - six_cable_robot.attachments_m
+    expected = np.zeros((6, 3))
+    expected[2] = [0.01, 0.02, -0.03]
+    assert change == pytest.approx(expected, abs=1e-15)
+    assert not SHIPPED.by_id["attachment_offset"].on(machine)
+
+
+def test_one_cable_differs_from_the_others(machine, measured):
+    softer = machine_with(machine, "cable_modulus", 2, scale=0.5)
+    heavier = machine_with(softer, "cable_mass", 3, scale=2.0)
+    assert heavier.cables.axial_stiffness_N == pytest.approx([5e6, 2.5e6, 5e6])
+    assert heavier.cables.linear_density_kg_per_m == pytest.approx([0.4, 0.4, 0.8])
+    assert machine.cables is CABLE
+    grown = readings_of(
+        machine, measured, "cable_creep", 2, strain_per_decade=1e-3, onset_s=100.0
+    ).length_m
+    decades = np.log10(1.0 + TIME_S / 100.0)
+    assert grown[:, 1] == pytest.approx(LENGTH_M[:, 1] / (1.0 + 1e-3 * decades), rel=1e-14)
+    assert grown[:, [0, 2]] == pytest.approx(LENGTH_M[:, [0, 2]], rel=1e-15)
+
+
+def test_one_winch_has_a_scale_and_a_zero_of_its_own(machine, measured):
+    read = readings_of(machine, measured, "winch_scale", 3, scale=2.0, offset_m=-13.0).length_m
+    assert read[:, 2] == pytest.approx(2.0 * LENGTH_M[:, 2] - 13.0, rel=1e-14)
+    read = readings_of(machine, measured, "winch_zero", 1, offset_m=0.3).length_m
+    assert read - LENGTH_M == pytest.approx(np.outer([1, 1, 1], [0.3, 0, 0]), abs=1e-14)
+    # Beside offsets of all winches, they are no numbers of their own.
+    (scale,) = effect_of(machine, "winch_scale").beside({"length_offset"}).parameters
+    assert scale.name == "scale"
+    assert not effect_of(machine, "winch_zero").beside({"length_offset"}).parameters
+
+
+def test_a_larger_pulley_of_one_cable_is_that_of_all(machine, measured):
+    """On that cable, to what the pulleys of the others do to its tension."""
+    of_all = machine_with(machine, "pulley_radius", radius_m=0.05)
+    both = readings_with(of_all, measured).length_m
+    one = readings_of(machine, measured, "cable_pulley_radius", 2, radius_m=0.05).length_m
+    straight = readings_with(machine, measured).length_m
+    assert (one - LENGTH_M)[:, 1] == pytest.approx((both - straight)[:, 1], rel=0.01)
+    assert (one - LENGTH_M)[:, [0, 2]] == pytest.approx(np.zeros((3, 2)), abs=1e-15)
+
+
+def readings_with(machine: Machine, measured: Measured) -> Readings:
+    return foretold(machine, measured.poses)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from twins.effects import Effects, Parameters, Scene, predict, swayed
+from twins.effects import Effects, Parameters, Scene, as_seen, predict, swayed
 from twins.robots import TwinRobot
 
 ROWS_PER_PASS = 30
@@ -54,7 +54,7 @@ class DataSet:
 
     def columns(self, quantities: Iterable[str] = ("length", "tension")) -> dict[str, list[str]]:
         """Return the columns of ``measured.csv`` as text; '' where missing."""
-        scene, axes = self.scene, "xyz"
+        scene, axes = as_seen(self.scene, self.effects), "xyz"
         table = {"time_s": _text(scene.time_s, ".4f")}
         table |= {f"{a}_m": _text(scene.position_m[:, k], ".6f") for k, a in enumerate(axes)}
         if self.robot.attachment_m:
@@ -167,9 +167,13 @@ def make(
 
 
 def effect_size(dataset: DataSet, effect: str | None = None) -> float:
-    """Return the rms of what an effect (or all of them) changes in the readings, over the noise."""
+    """Return the rms of what an effect (or all of them) changes in the readings, over the noise.
+
+    Of an effect on the poses: the change from the readings in the poses that are seen.
+    """
     kept = {k: v for k, v in dataset.effects.items() if effect is not None and k != effect}
-    length, tension = predict(dataset.robot, kept, dataset.scene)
+    seen = as_seen(dataset.scene, {k: v for k, v in dataset.effects.items() if k not in kept})
+    length, tension = predict(dataset.robot, kept, seen)
     scale = dataset.noise or 1.0
     change_m = (dataset.clean_length_m - length) / (scale * dataset.robot.noise_m)
     change_N = (dataset.clean_tension_N - tension) / (scale * dataset.robot.noise_N)

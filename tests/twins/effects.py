@@ -56,7 +56,7 @@ class Scene:
 
 def predict(robot: TwinRobot, effects: Effects, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Return noise-free length [m] and tension [N] readings (rows, cables)."""
-    unknown = set(effects) - set(MACHINE) - set(READING)
+    unknown = set(effects) - set(MACHINE) - set(READING) - set(POSE)
     if unknown:
         raise KeyError(f"no such effect: {sorted(unknown)}")
     now = _equilibrium(robot, effects, scene)
@@ -137,6 +137,32 @@ def _anchor_offset(machine: Machine, scene: Scene, p: Parameters) -> Machine:
     return replace(machine, exit_m=exit_m)
 
 
+def _attachment_offset(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    attachment_m = machine.attachment_m.copy()
+    attachment_m[int(p["cable"]) - 1] += _vector(p)
+    return replace(machine, attachment_m=attachment_m)
+
+
+def _of_cable(figures: np.ndarray, p: Parameters) -> np.ndarray:
+    scaled = figures.copy()
+    scaled[:, int(p["cable"]) - 1] *= p["scale"]
+    return scaled
+
+
+def _cable_modulus(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    return replace(machine, stiffness_N=_of_cable(machine.stiffness_N, p))
+
+
+def _cable_mass(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    return replace(machine, linear_mass=_of_cable(machine.linear_mass, p))
+
+
+def _cable_pulley_radius(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    radius = _each(machine, 0.0)
+    radius[:, int(p["cable"]) - 1] = p["radius_m"]
+    return replace(machine, pulley_radius_m=radius)
+
+
 def _wind_drag(machine: Machine, scene: Scene, p: Parameters) -> Machine:
     speed = np.linalg.norm(scene.wind_m_per_s, axis=1, keepdims=True)
     drag = 0.5 * AIR_KG_PER_M3 * speed * scene.wind_m_per_s * p["drag_area_m2"]
@@ -186,6 +212,10 @@ MACHINE: dict[str, Callable[[Machine, Scene, Parameters], Machine]] = {
     "platform_mass": _platform_mass,
     "centre_of_mass_offset": _centre_of_mass_offset,
     "anchor_offset": _anchor_offset,
+    "attachment_offset": _attachment_offset,
+    "cable_modulus": _cable_modulus,
+    "cable_mass": _cable_mass,
+    "cable_pulley_radius": _cable_pulley_radius,
     "wind_drag": _wind_drag,
     "base_tilt": _base_tilt,
     "bending_stiffness": _bending_stiffness,
@@ -217,6 +247,30 @@ def _thermal_expansion(readings: Readings, scene: Scene, p: Parameters) -> Readi
 def _creep(readings: Readings, scene: Scene, p: Parameters) -> Readings:
     growth = 1 + p["strain_per_decade"] * np.log10(1 + scene.time_s / p["onset_s"])
     return replace(readings, length_m=readings.length_m / growth[:, None])
+
+
+def _cable_creep(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    growth = 1 + p["strain_per_decade"] * np.log10(1 + scene.time_s / p["onset_s"])
+    return _of_winch(readings, p, lambda length: length / growth)
+
+
+def _winch_scale(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    """One winch counts too much, from the homing pose on, where it is right."""
+    homed = readings.robot.reference_length_m[int(p["cable"]) - 1]
+    return _of_winch(readings, p, lambda length: homed + p["scale"] * (length - homed))
+
+
+def _winch_zero(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    return _of_winch(readings, p, lambda length: length + p["offset_m"])
+
+
+def _of_winch(
+    readings: Readings, p: Parameters, law: Callable[[np.ndarray], np.ndarray]
+) -> Readings:
+    length = readings.length_m.copy()
+    column = int(p["cable"]) - 1
+    length[:, column] = law(length[:, column])
+    return replace(readings, length_m=length)
 
 
 def _drum_layering(readings: Readings, scene: Scene, p: Parameters) -> Readings:
@@ -275,15 +329,53 @@ READING: dict[str, Callable[[Readings, Scene, Parameters], Readings]] = {
     "clock_offset": _clock_offset,
     "thermal_expansion": _thermal_expansion,
     "creep": _creep,
+    "cable_creep": _cable_creep,
     "drum_layering": _drum_layering,
     "drum_scale": _drum_scale,
     "tension_length": _tension_length,
+    "winch_scale": _winch_scale,
     "length_offset": _length_offset,
+    "winch_zero": _winch_zero,
     "encoder_backlash": _encoder_backlash,
     "pulley_friction": _pulley_friction,
     "tension_gain": _tension_gain,
     "tension_bias": _tension_bias,
 }
+
+# --- the camera ----------------------------------------------------------------------------------
+
+
+def _pose_shift(position: np.ndarray, turn: np.ndarray, p: Parameters) -> Pose:
+    return position + _vector(p), turn
+
+
+def _pose_scale(position: np.ndarray, turn: np.ndarray, p: Parameters) -> Pose:
+    return position * p["scale"], turn
+
+
+def _pose_frame(position: np.ndarray, turn: np.ndarray, p: Parameters) -> Pose:
+    """Its own axes, zero and unit: x' = scale · R x + shift, about the frame's zero."""
+    rotation = Rotation.from_rotvec([p["rx_rad"], p["ry_rad"], p["rz_rad"]])
+    turned = (rotation * Rotation.from_rotvec(turn)).as_rotvec()
+    return p["scale"] * rotation.apply(position) + _vector(p), turned
+
+
+Pose = tuple[np.ndarray, np.ndarray]
+POSE: dict[str, Callable[[np.ndarray, np.ndarray, Parameters], Pose]] = {
+    "pose_shift": _pose_shift,
+    "pose_scale": _pose_scale,
+    "pose_frame": _pose_frame,
+}
+
+
+def as_seen(scene: Scene, effects: Effects) -> Scene:
+    """Return the scene with the poses as the camera measures them."""
+    position, turn = scene.position_m, scene.rotation_vector_rad
+    for name, change in POSE.items():
+        if name in effects:
+            position, turn = change(position, turn, effects[name])
+    return replace(scene, position_m=position, rotation_vector_rad=turn)
+
 
 UNLISTED = (
     "tower_settles",
@@ -292,7 +384,7 @@ UNLISTED = (
 )
 """Effects that the contract does not know."""
 
-LISTED = tuple(name for name in [*MACHINE, *READING] if name not in UNLISTED)
+LISTED = tuple(name for name in [*MACHINE, *READING, *POSE] if name not in UNLISTED)
 """Effects of the contract."""
 
 

@@ -90,7 +90,8 @@ class TwinRobot:
         """Return parameters of an effect of this size; seed picks sign, cable and direction.
 
         The size of a scale or gain is |log(scale)|; of a vector its norm; of several offsets their
-        rms; of anything else its value. Modulus gets softer and mass per length heavier, as ropes
+        rms; of a frame its shift, with a turn and a scale that move the exit points about as far;
+        of anything else its value. Modulus gets softer and mass per length heavier, as ropes
         do, and because the other way the effect is bounded.
         """
         rng = np.random.default_rng([seed, sum(map(ord, effect))])
@@ -102,6 +103,8 @@ class TwinRobot:
         middle_N = self.mass_kg * 9.81 / self.cables
         vector = dict(zip(("x_m", "y_m", "z_m"), (size * direction).tolist(), strict=True))
         offsets = (size * spread).tolist()
+        turn = size / np.ptp(self.exit_m, axis=0).max() * _unit(rng.normal(size=3))
+        turns = dict(zip(("rx_rad", "ry_rad", "rz_rad"), turn.tolist(), strict=True))
         return {
             "pulley_radius": lambda: {"radius_m": size},
             "thermal_expansion": lambda: {"coefficient_per_K": size},
@@ -110,6 +113,16 @@ class TwinRobot:
             "platform_mass": lambda: {"offset_kg": float(sign * size)},
             "centre_of_mass_offset": lambda: vector,
             "anchor_offset": lambda: {"cable": cable, **vector},
+            "attachment_offset": lambda: {"cable": cable, **vector},
+            "cable_modulus": lambda: {"cable": cable, "scale": float(np.exp(-size))},
+            "cable_mass": lambda: {"cable": cable, "scale": float(np.exp(size))},
+            "cable_pulley_radius": lambda: {"cable": cable, "radius_m": size},
+            "cable_creep": lambda: {"cable": cable, "strain_per_decade": size, "onset_s": 600.0},
+            "winch_scale": lambda: {"cable": cable, "scale": float(np.exp(sign * size))},
+            "winch_zero": lambda: {"cable": cable, "offset_m": float(sign * size)},
+            "pose_shift": lambda: vector,
+            "pose_scale": lambda: {"scale": float(np.exp(sign * size))},
+            "pose_frame": lambda: {**vector, **turns, "scale": 1.0 + float(turn[0])},
             "length_offset": lambda: {f"offset_{k}_m": v for k, v in enumerate(offsets, 1)},
             "drum_scale": lambda: {"scale": float(np.exp(sign * size))},
             "drum_layering": lambda: {"radius_gain_per_m": size},
@@ -145,6 +158,10 @@ _COMMON = {
     "tension_gain": (2e-3, 0.2),
     "base_tilt": (5e-4, 2e-2),
     "clock_offset": (0.01, 0.5),
+    "cable_modulus": (0.05, 0.6),
+    "cable_mass": (0.2, 1.0),
+    "winch_scale": (3e-4, 0.7),
+    "pose_scale": (3e-4, 1e-2),
 }
 
 YARD3 = TwinRobot(
@@ -163,6 +180,11 @@ YARD3 = TwinRobot(
         "pulley_radius": (0.005, 0.2),
         "platform_mass": (0.5, 30.0),
         "anchor_offset": (0.002, 0.2),
+        "cable_pulley_radius": (0.005, 0.2),
+        "cable_creep": (2e-5, 1e-3),
+        "winch_zero": (0.002, 0.3),
+        "pose_shift": (0.002, 0.3),
+        "pose_frame": (0.002, 0.3),
         "length_offset": (0.001, 0.1),
         "drum_layering": (5e-5, 5e-3),
         "creep": (1e-5, 1e-3),
@@ -195,6 +217,12 @@ FAST3 = TwinRobot(
         "pulley_radius": (0.02, 1.0),
         "platform_mass": (5.0, 300.0),
         "anchor_offset": (0.01, 1.0),
+        "cable_mass": (0.002, 0.3),
+        "cable_pulley_radius": (0.02, 1.0),
+        "cable_creep": (5e-6, 1e-3),
+        "winch_zero": (0.01, 1.0),
+        "pose_shift": (0.01, 1.0),
+        "pose_frame": (0.01, 1.0),
         "length_offset": (0.005, 0.5),
         "drum_layering": (1e-6, 3e-4),
         "creep": (5e-6, 1e-3),
@@ -237,6 +265,12 @@ HALL6 = TwinRobot(
         "platform_mass": (0.5, 20.0),
         "centre_of_mass_offset": (0.003, 0.15),
         "anchor_offset": (0.002, 0.1),
+        "attachment_offset": (0.002, 0.1),
+        "cable_pulley_radius": (0.003, 0.1),
+        "cable_creep": (2e-5, 1e-3),
+        "winch_zero": (0.001, 0.1),
+        "pose_shift": (0.001, 0.1),
+        "pose_frame": (0.001, 0.1),
         "length_offset": (0.0005, 0.05),
         "drum_layering": (5e-5, 5e-3),
         "creep": (1e-5, 1e-3),

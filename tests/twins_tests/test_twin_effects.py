@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from twins.dataset import effect_size, make
-from twins.effects import LISTED, UNLISTED, Scene, predict
+from twins.effects import LISTED, UNLISTED, Scene, as_seen, predict
 from twins.physics import GRAVITY, solve
 from twins.robots import FAST3, HALL6, ROBOTS, YARD3, TwinRobot
 
@@ -31,7 +31,7 @@ def test_the_contracts_effects_are_there_and_no_other_under_its_names() -> None:
 @pytest.mark.parametrize("robot", ROBOTS.values(), ids=lambda robot: robot.name)
 def test_every_plausible_effect_grows_with_its_size(robot) -> None:
     names = (CONTRACT | set(UNLISTED)) - (
-        {"centre_of_mass_offset"} if robot is not HALL6 else set()
+        {"centre_of_mass_offset", "attachment_offset"} if robot is not HALL6 else set()
     )
     assert set(robot.sizes) == names
     for effect, (small, large) in robot.sizes.items():
@@ -192,3 +192,31 @@ def test_what_is_not_in_the_list() -> None:
     _, read, _ = readings(YARD3, "encoder_backlash", width_m=0.02)
     turned = np.abs(read - length)[1:]
     assert np.allclose(turned[turned > 1e-12], 0.01)
+
+
+def test_effects_of_one_cable_leave_the_others() -> None:
+    _, length, tension = readings(YARD3)
+    _, softer, _ = readings(YARD3, "cable_modulus", cable=2, scale=0.5)
+    stretch = length * tension / YARD3.stiffness_N
+    assert np.allclose((softer - length)[:, 1], -stretch[:, 1], rtol=0.03)
+    assert np.abs((softer - length)[:, [0, 2]]).max() < 0.01 * stretch.min()
+    _, read, _ = readings(YARD3, "winch_scale", cable=3, scale=2.0)
+    homed = YARD3.reference_length_m[2]
+    assert np.allclose(read - length, (length - homed) * [0, 0, 1], atol=1e-12)
+    _, read, _ = readings(YARD3, "winch_zero", cable=1, offset_m=0.2)
+    assert np.allclose(read - length, [0.2, 0, 0], atol=1e-12)
+
+
+def test_a_camera_with_a_frame_of_its_own_sees_the_same_platform() -> None:
+    """A robot that is moved with its camera's frame has the readings of the one that stands."""
+    frame = {"x_m": 0.3, "y_m": -0.2, "z_m": 0.1, "rx_rad": 0.0, "ry_rad": 0.0, "rz_rad": 0.4}
+    scene = make(HALL6, rows=6, seed=3).scene
+    seen = as_seen(scene, {"pose_frame": {**frame, "scale": 1.0}})
+    turn = Rotation.from_rotvec([0.0, 0.0, 0.4])
+    moved = HALL6.machine()
+    moved = replace(moved, exit_m=turn.apply(moved.exit_m[0])[None] + [0.3, -0.2, 0.1])
+    body = Rotation.from_rotvec(seen.rotation_vector_rad).as_matrix()
+    _, length, tension = readings(HALL6, scene=scene)
+    true = solve(moved, seen.position_m, body)
+    assert np.allclose(true.length_m, length, rtol=1e-10)
+    assert np.allclose(true.exit_tension_N, tension, rtol=1e-10)

@@ -14,7 +14,7 @@ from designer.documents.document import Data, Document
 from designer.documents.opened import open_input, reason
 from designer.documents.picture import LARGEST_PICTURE_BYTES, why_not_shown
 from designer.documents.section import reader_of
-from designer.effects.effect import ALL_ANCHORS, Effect
+from designer.effects.effect import ALL_ANCHORS, ALL_ATTACHMENTS, Effect
 from designer.errors import Fault
 from designer.io.config.columns import ColumnSection
 from designer.io.config.robot_checks import AT_MOST, LARGEST, ROBOT_CHECKS, Parts, rank, valid
@@ -310,7 +310,8 @@ def unknown_poses_can_be_told(parts: Parts) -> Iterator[Fault]:
     unknown = {name: index for index, name in _texts(parts, _UNKNOWN)}
     if POSES not in unknown:
         return
-    for name in unknown.keys() & {ALL_ANCHORS, "anchor_offset", "base_tilt"}:
+    lost = {ALL_ANCHORS, "anchor_offset", ALL_ATTACHMENTS, "attachment_offset", "base_tilt"}
+    for name in unknown.keys() & lost:
         problem = f"'{name}' and '{POSES}' are both unknown, and nothing tells one from the other"
         yield parts.fault(_UNKNOWN, problem, "one of them", unknown[name])
     if parts.raw("workspace.region") is None:

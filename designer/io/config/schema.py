@@ -261,7 +261,8 @@ class MeasurementsSection(Section):
     """Whether each row of the data is a pose at rest; else a sample of a slow motion."""
     unknown: Names = ()
     """Effects that are fitted from the start and not counted as a finding; `anchors` for all
-    exit points; `poses` where lengths and tensions have to tell them."""
+    exit points, `attachments` for all of those; `poses` where lengths and tensions have to tell
+    them."""
     cable: MeasuredCableSection = config_field(expected="{linear_mass: …, axial_stiffness: …}")
     """The cable that was on the machine."""
     noise: NoiseSection = NoiseSection()
