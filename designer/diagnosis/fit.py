@@ -182,7 +182,7 @@ def _promising(
     """Return of starts the two from which one linear step leaves least, of equal ones the first."""
     if len(starts) == 1:
         return [*starts]
-    losses = {}
+    losses: dict[float, FloatArray] = {}
     for vector in starts:
         residual = problem.residual(settings_at(effects, vector))[is_used]
         slopes = jacobian(problem, effects, vector)[is_used]
