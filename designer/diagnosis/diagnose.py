@@ -101,7 +101,6 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     base = fit(outcome.searcher.problem, case.given, ~heldout) if outcome.found else outcome.fit
     first, last = base.settings, outcome.fit.settings
     before, after = problem.residual(first), problem.residual(last)
-    predicted = problem.predicted(last)
     if isinstance(problem.predict, FreePredictor):
         measured = replace(measured, poses=problem.predict.poses(last, problem.noise))
     compared = heldout & with_sound_lengths(problem, last)
@@ -128,7 +127,7 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
         structure_after=outcome.structure,
         residual_before=before,
         residual_after=after,
-        predicted=predicted,
+        predicted=problem.predicted(last),
         covariates=covariates,
         outliers=outliers_of(after, measured.row_numbers),
         left_in=trend,
