@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from designer.errors import Fault
 from designer.measured.table import LogTable, RawColumn
@@ -152,31 +153,43 @@ class Assigned:
 def assign(
     tables: Sequence[LogTable], study: Study, measurements: Measurements
 ) -> tuple[Assigned, ...]:
-    """Return each table with its columns assigned by the config's map and by their names."""
+    """Return each table with its columns assigned by the config's map and by their names.
+
+    ``winches.time`` in the map is the column ``time`` of the file ``winches.csv`` alone.
+    """
     parts = tuple(Assigned(table) for table in tables)
     mapped = {entry.name: entry for entry in measurements.columns}
-    present: dict[str, RawColumn] = {}
+    present: set[str] = set()
+    used: set[str] = set()
     for part in parts:
-        named: dict[str, RawColumn] = {}
-        for place, column in enumerate(part.table.columns, start=1):
-            if column.name:
-                named.setdefault(column.name, column)
-            elif not column.is_empty:
-                part.notes.append(f"column {place} has no name and was left out")
-        present |= named
-        for name, entry in mapped.items():
-            if name in named:
+        file, named = Path(part.table.name).stem, _named(part)
+        present |= named.keys()
+        entries = {name: mapped.get(f"{file}.{name}", mapped.get(name)) for name in named}
+        for name, entry in entries.items():
+            if entry is not None:
+                used.add(entry.name)
                 _assign_mapped(part, named[name], entry)
-        for name, column in named.items():
-            if name not in mapped:
-                _assign_by_name(part, column, study)
+        for name, entry in entries.items():
+            if entry is None:
+                _assign_by_name(part, named[name], study)
     for name, entry in reversed(mapped.items()):
-        if name not in present:
+        if name not in used:
             parts[0].awaited.add(entry.target)
             problem = f"there is no such column in {' or '.join(table.name for table in tables)}"
-            expected = f"a name in its first line{did_you_mean(name, present)}"
+            expected = f"a name in its first line{did_you_mean(name, sorted(present))}"
             parts[0].faults.insert(0, study.source.fault(f"{_MAP}.{name}", problem, expected))
     return parts
+
+
+def _named(part: Assigned) -> dict[str, RawColumn]:
+    """Return the columns by their names, the first of each; note those without."""
+    named: dict[str, RawColumn] = {}
+    for place, column in enumerate(part.table.columns, start=1):
+        if column.name:
+            named.setdefault(column.name, column)
+        elif not column.is_empty:
+            part.notes.append(f"column {place} has no name and was left out")
+    return named
 
 
 def complete(assigned: Assigned, study: Study, measurements: Measurements) -> None:
@@ -205,6 +218,9 @@ def complete(assigned: Assigned, study: Study, measurements: Measurements) -> No
 def _assign_mapped(assigned: Assigned, column: RawColumn, entry: LogColumn) -> None:
     if entry.target == COVARIATE:
         assigned.covariates[entry.name] = column
+    elif entry.target in assigned.ours:
+        problem = f"another column of this file is mapped onto {entry.target}"
+        assigned.faults.append(assigned.table.fault(None, column.name, problem, "one of them"))
     elif entry.target != IGNORE:
         values = column.values
         if column.unit and not entry.has_unit:

@@ -265,6 +265,39 @@ def test_names_that_two_files_share(log: Log) -> None:
     }
 
 
+def test_each_file_has_a_time_of_its_own_name_and_unit(log: Log) -> None:
+    before = log.read()
+    split(log)
+    spoil(log, "poses", "time_s", "stamp")
+    path = log.folder / "winches.csv"
+    head, *rows = path.read_text().splitlines()
+    cells = [row.partition(",") for row in rows]
+    rows = [f"{1000.0 * float(time)},{rest}" for time, _, rest in cells]
+    path.write_text("\n".join([head.replace("time_s", "t"), *rows]))
+    for columns in (
+        "{stamp: time_s, t: {to: time_s, unit: ms}}",
+        "{poses.stamp: time_s, winches.t: {to: time_s, unit: ms}}",
+    ):
+        log.columns = columns
+        log.write_config()
+        same(read_as(log, "[poses.csv, winches.csv]"), before)
+    spoil(log, "poses", "stamp,x_m", "stamp,t")
+    log.columns = "{stamp: time_s, t: time_s}"
+    log.write_config()
+    fault = faults_as(log, "[poses.csv, winches.csv]")[0]
+    assert (fault.line, fault.field) == (1, "t")
+    assert fault.problem == "another column of this file is mapped onto time_s"
+
+
+def test_a_map_of_one_file_alone(log: Log) -> None:
+    before = log.read()
+    split(log)
+    spoil(log, "poses", "x_m", "length_1_m")
+    log.columns = "{poses.length_1_m: x_m}"
+    log.write_config()
+    same(read_as(log, "[poses.csv, winches.csv]"), before)
+
+
 def spoil(log: Log, name: str, old: str, new: str) -> None:
     path = log.folder / f"{name}.csv"
     path.write_text(path.read_text().replace(old, new, 1))

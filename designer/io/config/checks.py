@@ -18,7 +18,7 @@ from designer.effects.effect import ALL_ANCHORS, ALL_ATTACHMENTS, Effect
 from designer.errors import Fault
 from designer.io.config.columns import ColumnSection
 from designer.io.config.robot_checks import AT_MOST, LARGEST, ROBOT_CHECKS, Parts, rank, valid
-from designer.measured.assign import COVARIATE, IGNORE, cable_of, is_rotation
+from designer.measured.assign import COVARIATE, IGNORE, TIME_NAME, cable_of, is_rotation
 from designer.model.measurements import POSES
 from designer.model.prism import Prism
 from designer.model.rectangle import Rectangle
@@ -271,7 +271,7 @@ def effects_are_known(parts: Parts) -> Iterator[Fault]:
 def columns_fit_the_robot(parts: Parts) -> Iterator[Fault]:
     """Each column goes to a place of its own that the robot has, and a point mass to no turn."""
     first_use: dict[str, str] = {}
-    columns = parts.raw(_COLUMNS)
+    columns, has_files = parts.raw(_COLUMNS), isinstance(parts.raw("measurements.file"), list)
     for name, column in columns.items() if isinstance(columns, dict) else ():
         section = valid(reader_of(ColumnSection), column)
         if section is None or section.to in (IGNORE, COVARIATE):
@@ -284,7 +284,7 @@ def columns_fit_the_robot(parts: Parts) -> Iterator[Fault]:
             expected = f"robot.platform.attachments, or '{IGNORE}'"
             problem = f"{target} has no meaning for a point mass"
             yield parts.fault(_COLUMNS, problem, expected, name)
-        if target in first_use:
+        if target in first_use and not (target == TIME_NAME and has_files):
             problem = f"{target} is already the column '{first_use[target]}'"
             yield parts.fault(_COLUMNS, problem, f"another name of ours, or '{IGNORE}'", name)
         first_use.setdefault(target, name)
