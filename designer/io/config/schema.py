@@ -16,7 +16,6 @@ from pydantic import (
     Field,
     StrictBool,
     Tag,
-    WithJsonSchema,
     model_validator,
 )
 
@@ -50,10 +49,11 @@ Readings = Annotated[
 ]
 Names = Annotated[tuple[fields.Text, ...], fields.list_of(0, 1000, "a list")]
 Files = Annotated[
-    tuple[fields.Text, ...],
-    fields.list_of(1, 100, "the name of a file, or a list of files"),
-    BeforeValidator(lambda given: [given] if isinstance(given, str) else given),
-    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]}),
+    Annotated[fields.Text, Tag("a file")]
+    | Annotated[
+        Annotated[tuple[fields.Text, ...], fields.list_of(1, 100, "a list of files")], Tag("files")
+    ],
+    Discriminator(lambda given: "files" if isinstance(given, list | tuple) else "a file"),
 ]
 CableNumbers = Annotated[
     tuple[Annotated[int, fields.WholeNumber(1, MOST_CABLES)], ...],
@@ -271,10 +271,11 @@ class MeasurementsSection(Section):
     """How long the diagnosis may search for effects."""
 
     def measurements(self, folder: Path) -> Measurements:
-        """Return what was measured, with its file from this folder."""
+        """Return what was measured, with its files from this folder."""
+        files = (self.file,) if isinstance(self.file, str) else self.file
         return Measurements(
-            file=folder / self.file[0],
-            more_files=tuple(folder / name for name in self.file[1:]),
+            file=folder / files[0],
+            more_files=tuple(folder / name for name in files[1:]),
             linear_density_kg_per_m=self.cable.linear_mass,
             axial_stiffness_N=self.cable.axial_stiffness,
             diameter_m=self.cable.diameter,
