@@ -32,6 +32,7 @@ _NOT_RUN = {"how-to/window.md"}
 _SELDOM = {
     *("name", "not_tried", "strongest_covariate", "fraction_of_variance"),
     *("grade", "size_id", "safety_factor"),
+    *("first", "second", "correlation"),  # of parameters that data tell badly apart
     # Of findings, each of which some studies have.
     *("policy", "depth_m", "inradius_m", "lowest_z_m"),
     *("share", "rotation_vector", "wind_direction", "inertia_direction", "force_N"),
