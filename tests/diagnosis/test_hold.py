@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from designer.diagnosis.hold import Reason, _no_step, _orthonormal
+from designer.diagnosis.hold import Reason, _no_step
+from designer.diagnosis.statistics import orthonormal
 from designer.diagnosis.structure import Carrier
 
 
 def test_a_basis_spans_all_columns_whatever_their_sizes() -> None:
     rng = np.random.default_rng(20261125)
     columns = rng.normal(size=(40, 5)) * 10.0 ** np.array([-9.0, -4.0, 0.0, 4.0, 9.0])
-    basis = _orthonormal(np.column_stack([columns, 3.0 * columns[:, 0], np.zeros(40)]))
+    basis = orthonormal(np.column_stack([columns, 3.0 * columns[:, 0], np.zeros(40)]))
     assert basis.shape == (40, 5)
     assert basis.T @ basis == pytest.approx(np.eye(5), abs=1e-12)
     scaled = columns / np.linalg.norm(columns, axis=0)
