@@ -236,7 +236,7 @@ def _assign_mapped(assigned: Assigned, column: RawColumn, entry: LogColumn) -> N
 def unit_faults(table: LogTable, column: RawColumn, hint: str = "") -> Iterator[Fault]:
     """Yield the fault of a column of ours whose unit in the file is not that of its name."""
     dimension = dimension_of(column.name) or NUMBER
-    if not column.unit:
+    if not column.unit or column.name.endswith(f"_{column.unit}"):  # as temperature_C does
         return
     try:
         if unit_conversion(column.unit, dimension) != (1.0, 0.0):

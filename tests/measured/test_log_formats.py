@@ -45,7 +45,8 @@ def test_words_for_nothing(log: Log, cell: str) -> None:
 
 def test_a_row_of_units(log: Log) -> None:
     before = log.read()
-    log.rows.insert(0, ["s", "m", "m", "m", "m", "m", "m", "N", "N", "kN"])
+    log.add("temperature_C", [20 + row % 5 for row in range(30)])
+    log.rows.insert(0, ["s", "m", "m", "m", "m", "m", "m", "N", "N", "kN", "C"])
     log.rename("tension_3_N", "cell 3")
     log.rename("z_m", "z")
     log.rows[0][log.names.index("z")] = "[mm]"
