@@ -234,8 +234,8 @@ def diagnose(
     Example:  designer diagnose built-crane.yaml
     A month later:  designer diagnose --check built-crane.diagnosed.yaml --data new.csv
 
-    Exit status 0: all structure is explained. 1: some is left, or declared effects do not help.
-    2: the input is wrong.
+    Exit status 0: the model, with what was found, agrees with the data. 1: something is left or
+    not plausible, or declared effects do not help. 2: the input is wrong.
     """
     from designer.cli.tables import print_check, print_diagnosis
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out
@@ -284,7 +284,7 @@ def diagnose(
     n_known = len(study.known_effects.problems)
     print_left_out(result.study.known_effects.problems[n_known:])
     print_diagnosis(result, folder, written)
-    return not result.is_unexplained
+    return result.is_positive
 
 
 @app.command()

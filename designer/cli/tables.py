@@ -250,8 +250,8 @@ def _found(diagnosis: Diagnosis) -> Iterator[Row]:
             f"{name} = {e.value:.4g} ± {e.std:.2g}" for name, e in finding.parameters.items()
         )
         yield f"[bold]{escape(finding.effect.key)}[/]", escape(values)
-        if finding.rivals:
-            yield "  or", escape(", ".join(finding.rivals))
+        if finding.rivals or diagnosis.has_no_rivals(finding):
+            yield "  or", escape(", ".join(finding.rivals) or "none in the list")
     if not diagnosis.findings:
         yield "effects", "none found"
     for effect in diagnosis.not_tried:

@@ -13,7 +13,7 @@ from designer.diagnosis.fit import fit
 from designer.diagnosis.free_poses import FreePredictor, first_poses
 from designer.diagnosis.problem import Predictor, Problem
 from designer.diagnosis.statistics import heldout_rows, spread
-from designer.effects.effect import NEEDS, Effect, Setting, as_built
+from designer.effects.effect import NEEDS, Effect, Setting, as_built, frame_size_m
 from designer.errors import InputError
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured, Noise
@@ -95,8 +95,11 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     recorded = _recorded(study, measured)
     skipped = {e.key: _missing(e, recorded) or _too_few(e, measured) for e in effects}
     visible = [e for e in effects if not skipped[e.key]]
-    given = tuple(e for e in visible if e.is_among(measurements.unknown))
-    beside = [e.beside({e.id for e in given}) for e in visible if e not in given]
+    given = tuple(
+        _as_unknown(e, measurements, machine) for e in visible if e.is_among(measurements.unknown)
+    )
+    given_keys = {e.key for e in given}
+    beside = [e.beside({e.id for e in given}) for e in visible if e.key not in given_keys]
     skipped |= {e.key: "is a part of what is unknown" for e in beside if not e.parameters}
     # On the machine an effect acts unseen; only wind has to be told.
     in_sight = [s for s in fixed if s.effect.on_machine is None or "wind" in s.effect.needs]
@@ -112,6 +115,29 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         fixed=tuple(s for s in fixed if s not in idle),
         idle=tuple((s.effect.key, _missing(s.effect, recorded)) for s in idle),
     )
+
+
+_UNKNOWN = 10.0
+"""How many times as far as a finding that which is unknown may be from the drawing."""
+_OF_FRAME, _MORE_M, _AT_MOST_M = 0.1, 0.1, 3.0
+"""How far a point of the frame, or a length, may be off that somebody has paced out, or taped round
+corners: a tenth of the frame and 0.1 m, at most 3 m."""
+
+
+def _as_unknown(effect: Effect, measurements: Measurements, machine: Machine) -> Effect:
+    """Return an effect with what is plausible of it where it is unknown from the start."""
+    limit_m = next((m for name, m in measurements.plausible_m if effect.is_among([name])), None)
+    times = _UNKNOWN
+    if effect.id == "attachment_offset":
+        times = 1.0
+    elif effect.id in ("anchor_offset", "length_offset") and limit_m is None:
+        limit_m = min(_OF_FRAME * frame_size_m(machine) + _MORE_M, _AT_MOST_M)
+    parameters = []
+    for p in effect.parameters:
+        ends = (p.neutral + times * (end - p.neutral) for end in p.plausible)
+        low, high = ends if limit_m is None else (-limit_m, limit_m)
+        parameters.append(replace(p, size=replace(p.size_here, plausible=(low, high))))
+    return replace(effect, parameters=tuple(parameters))
 
 
 def _missing(effect: Effect, recorded: frozenset[str]) -> str:

@@ -19,6 +19,7 @@ from designer.diagnosis.errors_of import (
     foretell,
     outliers_of,
 )
+from designer.diagnosis.events import with_given_up
 from designer.diagnosis.fit import fit
 from designer.diagnosis.hold import structure_left
 from designer.diagnosis.problem import Problem
@@ -248,6 +249,7 @@ def _check(study: Study, measured: Measured, progress: Callable[[str], None]) ->
         progress(f"poses by the lengths alone, {name}")
         models[name] = _model(problem, settings, held_rows[name], compared)
     progress("what is left")
+    residual = declared.residual(())
     return Check(
         study=study,
         measured=measured,
@@ -257,8 +259,10 @@ def _check(study: Study, measured: Measured, progress: Callable[[str], None]) ->
         fitted=models.get("fitted"),
         idle=case.idle,
         n_compared=int(compared.sum()),
-        structure=structure_left(declared, (), everywhere),
-        outliers=outliers_of(declared.residual(()), measured.row_numbers),
+        structure=with_given_up(
+            structure_left(declared, (), everywhere), residual, residual, measured.row_numbers
+        ),
+        outliers=outliers_of(residual, measured.row_numbers),
     )
 
 

@@ -11,6 +11,7 @@ from designer.arrays import BoolArray
 from designer.diagnosis.calibration import calibration_of
 from designer.diagnosis.case import Case, case_of, first_noise, rescaled
 from designer.diagnosis.errors_of import Stage, foretell, outliers_of, stage, with_sound_lengths
+from designer.diagnosis.events import with_given_up
 from designer.diagnosis.fit import Fit, fit, with_places
 from designer.diagnosis.free_poses import FreePredictor, taken_up
 from designer.diagnosis.hold import (
@@ -30,9 +31,6 @@ from designer.errors import EffectError
 from designer.model.measured_data import Measured
 from designer.progress import Pace
 from designer.study import Study
-
-_UNKNOWN = 10.0
-"""How many times as far as a finding that which is declared unknown may be from the drawing."""
 
 
 def diagnose_study(
@@ -106,9 +104,10 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     compared = heldout & with_sound_lengths(problem, last)
     covariates = covariates_of(measured, problem.surroundings(last))
     findings = tuple(_finding(outcome, e, gains[e.key]) for e in outcome.found)
+    structure = with_given_up(outcome.structure, after, problem.residual(()), measured.row_numbers)
     trend = correction = None
-    if outcome.structure.present:
-        name = outcome.structure.present[0].name
+    if structure.present:
+        name = structure.present[0].name
         trend = whereabouts(after, covariates[name], measured.row_numbers)
         correction = smooth_correction(after, name, covariates[name], heldout)
     return Diagnosis(
@@ -124,7 +123,7 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
         steps=outcome.steps,
         stages=_stages(outcome, problem, base, heldout),
         structure_before=structure_left(problem, first, np.ones_like(heldout)),
-        structure_after=outcome.structure,
+        structure_after=structure,
         residual_before=before,
         residual_after=after,
         predicted=problem.predicted(last),
@@ -194,7 +193,7 @@ def _doubts(case: Case, model: Fit) -> Iterator[str]:
     estimates = _estimates(model)
     for effect in case.given:
         for p in effect.parameters:
-            low, high = (p.neutral + _UNKNOWN * (end - p.neutral) for end in p.plausible)
+            low, high = p.plausible
             estimate = estimates[effect.key][p.name]
             if not low - 2 * estimate.std <= estimate.value <= high + 2 * estimate.std:
                 yield (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +19,7 @@ from designer.diagnosis.structure import (
     draws,
 )
 from designer.effects.load_step import LEAST_ROWS, best_step
+from designer.spelling import in_runs
 
 _MOST_ENDS = 500
 """Rows that stand off between which ranges are looked at."""
@@ -28,6 +30,51 @@ _FULL_SLOPE = (0.75, 1.25)
 it; a gain, even one of half, keeps below."""
 _KNEES = np.linspace(0.5, 0.95, 10)
 """Quantiles of the prediction at which a range may end: half of the readings count as sound."""
+
+
+_GROSS = 20.0
+"""Times the noise beyond which a reading is no reading of this model at all."""
+_ACCIDENTS = 0.03
+"""Share of the readings of a sensor that may be so by accident: a log seldom has more than one in a
+hundred, and one reading alone tells nothing."""
+
+
+def with_given_up(
+    structure: Structure, residual: FloatArray, unfitted: FloatArray, rows: IntArray
+) -> Structure:
+    """Return a structure with what a fit gives up that counts outliers little.
+
+    Readings tens of noises off that are nearly all of one cable; or so much that the fit, with all
+    readings counted in full, is no nearer to them than the model before it.
+
+    Parameters
+    ----------
+    residual, unfitted : array (n_rows, 2 n_cables)
+        With and without what was fitted, in units of noise; NaN where not measured.
+    rows : array (n_rows,)
+        Numbers of the rows in the file.
+    """
+    by_cable = residual.reshape(len(residual), 2, -1)
+    n_read = np.isfinite(by_cable).any(axis=1).sum(axis=0)
+    largest = np.abs(np.nan_to_num(by_cable)).max(axis=1)
+    is_gross = largest > _GROSS
+    counts = is_gross.sum(axis=0)
+    worst = int(np.argmax(counts))
+    events = list(structure.events)
+    is_many = counts[worst] >= max(2, _ACCIDENTS * n_read[worst])
+    if is_many and 3 * counts[worst] >= 2 * counts.sum():
+        off = is_gross[:, worst]
+        sizes = largest[off, worst]
+        text = (
+            f"cable {worst + 1}, off by {sizes.min():.0f} to {sizes.max():.0f} times the noise in "
+            f"rows {', '.join(in_runs(rows[off]))}: its winch or its sensors"
+        )
+        share = float(np.nansum(by_cable[off, :, worst] ** 2) / np.nansum(residual**2))
+        events.append(Event(text, share, 0.0))
+    if is_gross.any() and np.nansum(residual**2) > np.nansum(unfitted**2):
+        text = "readings that stand off: counted in full, all that was fitted helps nothing"
+        events.append(Event(text, 1.0, 0.0))
+    return replace(structure, events=tuple(events))
 
 
 def find_events(

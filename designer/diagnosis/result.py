@@ -360,6 +360,16 @@ class Diagnosis:
             return DiagnosisVerdict.IMPLAUSIBLE
         return DiagnosisVerdict.SCATTER if self.is_scattered else DiagnosisVerdict.NOTHING
 
+    def has_no_rivals(self, finding: Finding) -> bool:
+        """Tell whether all of the list were tried in place of a finding, and none is as good."""
+        cut_short = f"rivals of {finding.effect.key}:"
+        return not (finding.rivals or any(what.startswith(cut_short) for what in self.not_tried))
+
+    @property
+    def is_positive(self) -> bool:
+        """Whether the model, with what was found, is all that the data show."""
+        return self.verdict in (DiagnosisVerdict.FOUND, DiagnosisVerdict.NOTHING)
+
     def to_dict(self) -> dict[str, Any]:
         """Return what ``diagnosis.json`` holds; a missing number is None."""
         left_in = self.left_in

@@ -58,6 +58,9 @@ class Measurements(checked.Value):
         Whether the rows are poses at rest; False for samples of a slow motion.
     unknown : tuple of str
         Ids of what is fitted from the start and not counted as a finding; `POSES` as well.
+    plausible_m : tuple of (str, float)
+        How far from the drawing what is unknown may be, by its name in ``unknown`` [m]; the
+        diagnosis has ranges of its own for the rest.
     length_noise_m : float or None
         Standard deviation of a measured length [m]; None where not given.
     tension_noise_N : float or None
@@ -78,6 +81,7 @@ class Measurements(checked.Value):
     columns: tuple[LogColumn, ...] = ()
     settled: bool = True
     unknown: tuple[str, ...] = ()
+    plausible_m: tuple[tuple[str, float], ...] = ()
     length_noise_m: checked.Positive | None = None
     tension_noise_N: checked.Positive | None = None
     diameter_m: checked.Positive | None = None

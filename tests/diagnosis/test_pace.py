@@ -98,7 +98,9 @@ def test_time_may_end_between_two_rounds(tmp_path, monkeypatch) -> None:
     found = diagnose(case_with(600.0, tmp_path))
     assert [finding.effect.key for finding in found.findings] == ["platform_mass"]
     assert found.not_tried == ("round 2: all", "rivals of platform_mass: all")
-    assert "No rivals" not in {statement.title for statement in diagnosis_page(found).sureness}
+    assert "Rivals: none in the list" not in {
+        statement.title for statement in diagnosis_page(found).sureness
+    }
 
 
 def test_what_is_not_tested_on_unseen_rows_is_no_finding(tmp_path, monkeypatch) -> None:

@@ -249,6 +249,19 @@ class NoiseSection(Section):
     """Which of them a diagnosis has estimated; it writes this."""
 
 
+class PlausibleSection(Section):
+    """How far what is unknown may be from the drawing."""
+
+    anchors: fields.Clearance | None = config_field("Exit points")
+    """Of each exit point, along each axis; where left out, a tenth of the frame and 0.1 m,
+    at most 3 m."""
+    attachments: fields.Clearance | None = config_field("Attachment points")
+    """Of each attachment point, along each axis; a fifth of the platform where left out."""
+    length_offset: fields.Clearance | None = config_field("Homing of the winches")
+    """Of each winch; where left out, a tenth of the frame and 0.1 m,
+    at most 3 m."""
+
+
 class MeasurementsSection(Section):
     """Data measured on the built machine."""
 
@@ -263,6 +276,8 @@ class MeasurementsSection(Section):
     """Effects that are fitted from the start and not counted as a finding; `anchors` for all
     exit points, `attachments` for all of those; `poses` where lengths and tensions have to tell
     them."""
+    plausible: PlausibleSection = PlausibleSection()
+    """How far what is unknown may be from the drawing, before the diagnosis doubts it."""
     cable: MeasuredCableSection = config_field(expected="{linear_mass: …, axial_stiffness: …}")
     """The cable that was on the machine."""
     noise: NoiseSection = NoiseSection()
@@ -291,6 +306,7 @@ class MeasurementsSection(Section):
             ),
             settled=self.settled,
             unknown=self.unknown,
+            plausible_m=tuple((name, limit) for name, limit in self.plausible if limit is not None),
             length_noise_m=self.noise.length,
             tension_noise_N=self.noise.tension,
             estimated_noise=self.noise.estimated,

@@ -62,13 +62,8 @@ def verdict(diagnosis: Diagnosis) -> Context:
 
 def first_page(diagnosis: Diagnosis) -> Context:
     """The answer, and how sure it is."""
-    findings, not_tried = diagnosis.findings, diagnosis.not_tried
-    alone = [
-        f
-        for f in findings
-        if not f.rivals
-        and not any(what.startswith(f"rivals of {f.effect.key}:") for what in not_tried)
-    ]
+    findings = diagnosis.findings
+    alone = [finding for finding in findings if diagnosis.has_no_rivals(finding)]
     scatter = max(diagnosis.scatter.values(), default=0.0)
     return {
         **verdict(diagnosis),
