@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -136,7 +137,7 @@ def fit(
         return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(is_used))
     anew = anew and any(effect.starts or effect.starts_from for effect in effects)
     # Evaluations from anywhere, and from near the end.
-    turns = 80 if thorough or anew or not start else 12
+    turns = 80 if thorough or not start else 30 if anew else 12
     # Relative: the final model is told, a trial is only compared with others.
     tolerance = 1e-8 if thorough else 1e-5
     starts = _starts(problem, effects, start, _to_start(effects, start, anew=anew))
@@ -179,7 +180,7 @@ def _starts(
 def _promising(
     problem: Problem, effects: Sequence[Effect], is_used: BoolArray, starts: Sequence[FloatArray]
 ) -> list[FloatArray]:
-    """Return of starts the two from which one linear step leaves least, of equal ones the first."""
+    """Return the start or two from which a linear step leaves least, of equal ones the first."""
     if len(starts) == 1:
         return [*starts]
     losses: dict[float, FloatArray] = {}
@@ -187,7 +188,8 @@ def _promising(
         residual = problem.residual(settings_at(effects, vector))[is_used]
         slopes = jacobian(problem, effects, vector)[is_used]
         losses.setdefault(round(np.log(_loss_after_step(residual, slopes) + 1.0), 2), vector)
-    return [losses[loss] for loss in sorted(losses)[:2]]
+    least = min(losses)
+    return [losses[loss] for loss in sorted(losses)[:2] if loss < least + 0.1]
 
 
 def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:
@@ -213,18 +215,26 @@ def _slopes(
     return np.stack(slopes, axis=-1)
 
 
-def loss_in_reach(
-    problem: Problem,
-    effects: Sequence[Effect],
-    rows: BoolArray,
-    present: Fit,
-    effect: Effect,
-) -> float:
-    """Return the robust loss that one linear step leaves, with one more effect in the model.
+class Reach(NamedTuple):
+    """The robust loss after one linear step, without one more effect in the model and with it."""
 
-    The step is from the present values of the others, and from where a fit would start with the
-    effect: the best of its starts. The score test does so from where it does nothing (Rao, Proc.
-    Cambridge Philos. Soc. 44, 1948).
+    without: float
+    loss: float
+
+    @property
+    def gain(self) -> float:
+        """What the effect takes off the loss."""
+        return self.without - self.loss
+
+
+def in_reach(
+    problem: Problem, effects: Sequence[Effect], rows: BoolArray, present: Fit, effect: Effect
+) -> Reach:
+    """Return what one linear step leaves of the robust loss, with one more effect in the model.
+
+    The step is from the present values of the others, and for the
+    effect from where it does nothing, as a score test has it (Rao, Proc. Cambridge Philos. Soc. 44,
+    1948), or from where a fit would start: the best of these.
 
     Parameters
     ----------
@@ -239,15 +249,19 @@ def loss_in_reach(
     """
     is_used = rows[:, None] & ~np.isnan(problem.measured.readings)
     others = [s.effect for s in present.settings]
-    known = [jacobian(problem, others, present.vector)[is_used]] if others else []
+    known = np.empty((int(is_used.sum()), 0))
+    if others:
+        known = jacobian(problem, others, present.vector)[is_used]
     losses = []
-    for vector in _starts(problem, effects, present.settings, [effect]):
+    start = _starts(problem, effects, present.settings, [effect])
+    for vector in (starting_vector(effects, present.settings, effect.neutral), *start):
         settings = settings_at(effects, vector)
         (own,) = (places for s, places in with_places(settings) if s.effect.key == effect.key)
         slopes = _slopes(problem, effects, vector, own)[is_used]
         residual = problem.residual(settings)[is_used]
-        losses.append(_loss_after_step(residual, np.hstack([*known, slopes])))
-    return min(losses)
+        losses.append(_loss_after_step(residual, np.hstack([known, slopes])))
+    residual = problem.residual(present.settings)[is_used]
+    return Reach(_loss_after_step(residual, known), min(losses))
 
 
 def _loss_after_step(residual: FloatArray, slopes: FloatArray) -> float:

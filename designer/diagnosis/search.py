@@ -12,7 +12,7 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.drift import beside_drift
-from designer.diagnosis.fit import Fit, fit, huber, loss_in_reach
+from designer.diagnosis.fit import Fit, Reach, fit, huber, in_reach
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import SIGNIFICANCE, folds
 from designer.effects.effect import Effect, Setting
@@ -28,7 +28,7 @@ _PENALTY = 2.0
 _REACH = 0.25
 """Share of the best promise below which a candidate is not fitted: a linear step foretells the gain
 of a fit to some tens of per cent."""
-_FEWEST = 5
+_FEWEST = 3
 """Candidates that are fitted, whatever they promise: a report shows them."""
 
 
@@ -227,19 +227,20 @@ class Searcher:
 
         Of those that come too late, none.
         """
-        losses = {}
+        reaches = {}
         for effect in self._others(effects):
             self.progress(f"{part}: {effect.key} at first sight")
             is_late = self.progress.is_over
-            losses[effect] = present.loss if is_late else self._in_reach(effects, effect, present)
-        least = min(losses.values(), default=0.0)
+            late = Reach(present.loss, present.loss)
+            reaches[effect] = late if is_late else self._in_reach(effects, effect, present)
+        least = min((reach.loss for reach in reaches.values()), default=0.0)
         variance = max(1.0, least / max(present.n_data - len(present.vector), 1))
-        gains = {effect: (present.loss - loss) / variance for effect, loss in losses.items()}
-        return dict(sorted(gains.items(), key=lambda e: _PENALTY * len(e[0].parameters) - e[1]))
+        promised = {effect: reach.gain / variance for effect, reach in reaches.items()}
+        return dict(sorted(promised.items(), key=lambda e: _PENALTY * len(e[0].parameters) - e[1]))
 
-    def _in_reach(self, effects: Sequence[Effect], effect: Effect, present: Fit) -> float:
+    def _in_reach(self, effects: Sequence[Effect], effect: Effect, present: Fit) -> Reach:
         every = self._sorted([*self.given, *effects, effect])
-        return loss_in_reach(self.problem, every, self.rows, present, effect)
+        return in_reach(self.problem, every, self.rows, present, effect)
 
     def _tried(
         self,
@@ -307,12 +308,13 @@ class Searcher:
         gains = {t.effect.key: t.heldout_gain for step in added[-1:] for t in step.trials}
         good = {key for key, gain in gains.items() if gain >= 0.5 * gains[effect.key]}
         lost = self.fit(rest, present)
-        far = present.loss + max(0.5 * (lost.loss - present.loss), 3.0 * RIVAL_MARGIN * scale)
+        gain = lost.loss - present.loss
+        least = min(0.5 * gain, gain - 3.0 * RIVAL_MARGIN * scale)
         answer = []
         for rival in self.progress.each(f"rivals of {effect.key}", self._others(effects)):
             if effect.is_part_of(rival):  # which can do all that it does
                 continue
-            if rival.key not in good and self._in_reach(rest, rival, lost) > far:
+            if rival.key not in good and self._in_reach(rest, rival, lost).gain < least:
                 continue
             trials = [t.fit for step in steps for t in step.trials if t.effect.key == rival.key]
             fits = [self.fit([*rest, rival], present, anew=True)]
