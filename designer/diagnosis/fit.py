@@ -135,16 +135,15 @@ def fit(
     if not effects:
         loss = float(huber(problem.residual(())[is_used]).sum())
         return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(is_used))
-    anew = anew and any(effect.starts or effect.starts_from for effect in effects)
+    fresh = _to_start(effects, start, anew=anew)
     # Evaluations from anywhere, and from near the end.
-    turns = 80 if thorough or not start else 30 if anew else 12
+    turns = 80 if thorough or not start else 30 if anew and fresh else 12
     # Relative: the final model is told, a trial is only compared with others.
     tolerance = 1e-8 if thorough else 1e-5
-    starts = _starts(problem, effects, start, _to_start(effects, start, anew=anew))
-    fits = [
-        _fit_from(problem, effects, is_used, vector, turns, tolerance)
-        for vector in _promising(problem, effects, is_used, starts)
-    ]
+    starts = _starts(problem, effects, start, fresh)
+    if anew or not start:
+        starts = _promising(problem, effects, is_used, starts)
+    fits = [_fit_from(problem, effects, is_used, vector, turns, tolerance) for vector in starts]
     return min(fits, key=lambda candidate: candidate.loss)
 
 
@@ -180,16 +179,21 @@ def _starts(
 def _promising(
     problem: Problem, effects: Sequence[Effect], is_used: BoolArray, starts: Sequence[FloatArray]
 ) -> list[FloatArray]:
-    """Return the start or two from which a linear step leaves least, of equal ones the first."""
-    if len(starts) == 1:
-        return [*starts]
-    losses: dict[float, FloatArray] = {}
+    """Return the start or two from which a linear step leaves least, of equal ones the first.
+
+    The step itself is taken where it does good: far off, where all readings of a winch stand off,
+    the robust loss is so flat that the fit would not find its way.
+    """
+    low, high = np.array([p.bounds for effect in effects for p in effect.parameters]).T
+    steps: dict[float, FloatArray] = {}
     for vector in starts:
         residual = problem.residual(settings_at(effects, vector))[is_used]
-        slopes = jacobian(problem, effects, vector)[is_used]
-        losses.setdefault(round(np.log(_loss_after_step(residual, slopes) + 1.0), 2), vector)
-    least = min(losses)
-    return [losses[loss] for loss in sorted(losses)[:2] if loss < least + 0.1]
+        loss, step = _linear_step(residual, jacobian(problem, effects, vector)[is_used])
+        there = np.clip(vector + step, low, high)
+        residual_there = problem.residual(settings_at(effects, there))[is_used]
+        is_better = huber(residual_there).sum() < huber(residual).sum()
+        steps.setdefault(round(np.log(loss + 1.0), 2), there if is_better else vector)
+    return [steps[loss] for loss in sorted(steps)[:2] if loss < min(steps) + 0.1]
 
 
 def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:
@@ -259,21 +263,24 @@ def in_reach(
         (own,) = (places for s, places in with_places(settings) if s.effect.key == effect.key)
         slopes = _slopes(problem, effects, vector, own)[is_used]
         residual = problem.residual(settings)[is_used]
-        losses.append(_loss_after_step(residual, np.hstack([known, slopes])))
+        losses.append(_linear_step(residual, np.hstack([known, slopes]))[0])
     residual = problem.residual(present.settings)[is_used]
-    return Reach(_loss_after_step(residual, known), min(losses))
+    return Reach(_linear_step(residual, known)[0], min(losses))
 
 
-def _loss_after_step(residual: FloatArray, slopes: FloatArray) -> float:
-    """Return the least robust loss of a residual (n,) that is linear in parameters (n, p)."""
-    unit = slopes / np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
-    rest = residual
-    for _ in range(8):  # weights anew, which settle to a few per cent by then
+def _linear_step(residual: FloatArray, slopes: FloatArray) -> tuple[float, FloatArray]:
+    """Return the least robust loss of a residual (n,) linear in parameters (n, p), and the step."""
+    scale = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
+    unit, rest = slopes / scale, residual
+    step = np.zeros(len(scale))
+    for _ in range(20):  # weights anew: they settle where few readings stand off
         weight = np.minimum(1.0, HUBER / np.maximum(np.abs(rest), HUBER))
         weighted = unit * weight[:, None]
-        square = weighted.T @ unit + 1e-10 * np.eye(unit.shape[1])
-        rest = residual - unit @ np.linalg.solve(square, weighted.T @ residual)
-    return float(huber(rest).sum())
+        square = weighted.T @ unit
+        ridge = 1e-10 * np.trace(square) * np.eye(len(scale))
+        step = -np.linalg.solve(square + ridge, weighted.T @ residual)
+        rest = residual + unit @ step
+    return float(huber(rest).sum()), step / scale
 
 
 def _fit_from(
