@@ -6,12 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from designer.diagnosis.calibration import Calibrated
 from designer.diagnosis.result import Diagnosis, RopeChoice, Use
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.cable import Cable
-from designer.model.uncertainty import MOST_DEVIATION
+from designer.model.uncertainty import MOST_DEVIATION, Uncertainty
 from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate
 from designer.selection.efficiency import Allowance, bending_efficiency
@@ -36,25 +35,23 @@ def declared_by(diagnosis: Diagnosis) -> tuple[DeclaredEffect, ...]:
 def spreads_of(diagnosis: Diagnosis) -> dict[str, float]:
     """Return standard deviations of a design's inputs that the data settle, by their names there.
 
-    ``payload`` is relative; ``exit_points`` [m] is the root mean square over all coordinates, those
-    that were not fitted being certain, and is left out where the study says it and not all were.
+    ``payload`` is relative, and left out where the study says how it varies. ``exit_points`` [m] is
+    the root mean square over all coordinates, those that were not fitted being certain, and is left
+    out where the study says it and not all were fitted.
     """
     study, calibration = diagnosis.study, diagnosis.calibration
-    selection = study.selection
+    selection, robot = study.selection, study.robot
     if calibration is None or selection is None or selection.groups:
         return {}  # only what one rope on all cables meets is drawn
-    robot, stated = study.robot, study.uncertainty
-    of_effect: dict[str, list[Calibrated]] = {}
-    for fitted in calibration.parameters:
-        of_effect.setdefault(fitted.effect.id, []).append(fitted)
+    stated = study.uncertainty or Uncertainty()
     spreads = {}
-    for fitted in of_effect.get("platform_mass", ()):
-        spreads["payload"] = min(
-            fitted.std / (robot.platform.mass_kg + fitted.value), MOST_DEVIATION
-        )
-    points = of_effect.get("anchor_offset", [])
+    for fitted in calibration.parameters:
+        if fitted.effect.id == "platform_mass" and stated.payload is None:
+            mass_kg = robot.platform.mass_kg + fitted.value
+            spreads["payload"] = min(fitted.std / mass_kg, MOST_DEVIATION)
+    points = [each for each in calibration.parameters if each.effect.id == "anchor_offset"]
     is_whole = len(points) >= robot.exit_points_m.size
-    if points and (is_whole or stated is None or stated.exit_points_m is None):
+    if points and (is_whole or stated.exit_points_m is None):
         squares = sum(fitted.std**2 for fitted in points) / robot.exit_points_m.size
         spreads["exit_points"] = math.sqrt(squares)
     return {name: spread for name, spread in spreads.items() if 0.0 < spread < math.inf}
