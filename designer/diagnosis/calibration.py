@@ -20,6 +20,10 @@ from designer.diagnosis.fit import HUBER, Fit, jacobian
 from designer.diagnosis.problem import Problem
 from designer.effects.effect import Effect, Parameter
 
+_NO_SLOPE = 1e-6
+"""Of the largest singular value: slopes are differences, and no more accurate."""
+_SHARE = 1e-3
+"""Squared part of a parameter in a direction from which on the direction concerns it."""
 STRONG = 0.9
 """Correlation from which on two values are named."""
 
@@ -33,7 +37,7 @@ class Calibrated:
     effect, parameter
         Which it is.
     value, std : float
-        What was fitted, and its standard deviation.
+        What was fitted, and its standard deviation; inf where the data settle no value.
     influence : float
         Its largest change where one row is left out, in standard deviations; NaN where no row has
         a slope in it.
@@ -47,6 +51,11 @@ class Calibrated:
     std: float
     influence: float
     influence_row: int
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the data settle its value, rather than a combination with others alone."""
+        return math.isfinite(self.std)
 
     @property
     def label(self) -> str:
@@ -71,7 +80,7 @@ class Calibration:
     parameters : tuple of Calibrated
         In the order in which the effects act.
     covariance : array (n_parameters, n_parameters)
-        In that order, in SI units.
+        In that order, in SI units; NaN where the data settle no value.
     condition : float
         Condition number of the scaled Jacobian.
     observability : float
@@ -113,12 +122,15 @@ def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
     slopes = slopes[..., has_slope]
     change = np.full((len(residual), len(pairs)), np.nan)
     change[:, has_slope] = _changes(slopes, np.nan_to_num(weight * residual))
-    change *= typical / fit.std
-    sizes = np.abs(np.nan_to_num(change))
+    triangle = np.linalg.qr(slopes.reshape(-1, slopes.shape[-1]), mode="r")
+    _, singular, directions = np.linalg.svd(triangle)
+    # Along these no reading changes: a fit stays where it came to, and its deviation means nothing.
+    free = directions[singular <= _NO_SLOPE * singular[0]]
+    std = fit.std.copy()
+    std[has_slope] = np.where((free**2).sum(axis=0) > _SHARE, np.inf, std[has_slope])
+    covariance = np.where(np.isfinite(np.outer(std, std)), fit.covariance, np.nan)
+    sizes = np.abs(np.nan_to_num(change * typical / std))
     row = np.argmax(sizes, axis=0)
-    singular = np.linalg.svd(
-        np.linalg.qr(slopes.reshape(-1, slopes.shape[-1]), mode="r"), compute_uv=False
-    )
     n_rows = int(np.isfinite(residual).any(axis=1).sum())
     with np.errstate(divide="ignore"):
         logarithm = np.log(singular)
@@ -127,13 +139,13 @@ def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
             Calibrated(
                 *pair,
                 value=float(fit.vector[k]),
-                std=float(fit.std[k]),
-                influence=float(sizes[row[k], k]) if has_slope[k] else math.nan,
+                std=float(std[k]),
+                influence=float(sizes[row[k], k]) if np.isfinite(std[k]) else math.nan,
                 influence_row=int(problem.measured.row_numbers[row[k]]),
             )
             for k, pair in enumerate(pairs)
         ),
-        fit.covariance,
+        covariance,
         condition=float(singular[0] / singular[-1]) if singular[-1] > 0.0 else math.inf,
         observability=float(np.exp(np.mean(logarithm)) / math.sqrt(n_rows)),
     )

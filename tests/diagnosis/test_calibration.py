@@ -21,6 +21,7 @@ from designer.io.config import read_study
 from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
 from designer.model.measured_data import Noise
+from designer.report.diagnosis.report import write_diagnosis
 
 
 def case(folder, robot, unknown, *, rows=32, seed=5, more=None):
@@ -138,3 +139,23 @@ def test_deviations_stand_in_the_diagnosed_study(diagnosis, tmp_path) -> None:
     points = [size for label, size in std.items() if "anchor_offset" in label]
     rms = np.sqrt(np.mean(np.square(points)))
     assert stated.exit_points_m.standard_deviation == pytest.approx(rms, rel=0.01)
+
+
+def test_what_no_reading_tells_apart_has_no_deviation(tmp_path) -> None:
+    found = calibration_of(*fitted(case(tmp_path, YARD3, ("anchors", "pose_frame"))))
+    assert found is not None
+    settled = {each.label for each in found.parameters if each.is_settled}
+    assert found.condition > 1e6
+    # All exit points and the frame of the poses moved alike leave the readings as they are.
+    assert not {label for label in settled if label.startswith(("x of", "y of", "z of"))}
+    for each in found.parameters:
+        assert np.isnan(each.influence) == (not each.is_settled)
+
+
+def test_a_page_tells_what_is_not_settled(tmp_path) -> None:
+    found = diagnose(case(tmp_path, YARD3, ("anchors", "pose_frame")))
+    write_diagnosis(found, tmp_path)
+    page = (tmp_path / "diagnosis.html").read_text(encoding="utf-8")
+    assert "These data settle no single value of" in page
+    unknown = found.to_dict()["unknown"]
+    assert any(std is None for each in unknown for std in each["std"].values())

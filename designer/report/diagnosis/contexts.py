@@ -135,6 +135,9 @@ def calibration(diagnosis: Diagnosis) -> Context | None:
     by_effect = groupby(diagnosis.calibration.parameters, lambda fitted: fitted.effect.key)
     return {
         "fitted": [(key, key in unknown, list(fitted)) for key, fitted in by_effect],
+        "not_settled": [
+            fitted.label for fitted in diagnosis.calibration.parameters if not fitted.is_settled
+        ],
         "correlated": list(diagnosis.calibration.correlated),
         "most_correlated": _MOST_CORRELATED,
     }
