@@ -17,8 +17,8 @@ from designer.workspace.demand import is_left_out
 _MOST = 5
 _HEIGHTS = 25
 _BEYOND = 1e3
-_SOLVED = 2e5
-"""Poses that are solved at most: ten times as many move one pixel in three thousand."""
+_SOLVED, _SEARCHED = 2e5, 2e4
+"""Poses that are solved at most, and where each may have several branches, which are searched."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +51,8 @@ def layers_of(maps: WorkspaceMaps, usable: Usable) -> Layers | None:
         return None
     plan = maps.shell["top"].position_m
     solved = plan[..., 0].size * _HEIGHTS * len(sizes) * len(workspace.orientations.turns_rad)
-    share = min(1.0, np.sqrt(_SOLVED / solved))  # a coarser grid where there would be more to solve
+    most = _SOLVED if maps.study.robot.has_one_branch else _SEARCHED
+    share = min(1.0, np.sqrt(most / solved))  # a coarser grid where there would be more to solve
     rings = np.linspace(0, len(plan) - 1, max(2, round(share * len(plan)))).round().astype(int)
     low, high = maps.region.bounds_m[:, 2]
     heights = np.linspace(low, high, max(2, round(share * _HEIGHTS)))

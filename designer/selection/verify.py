@@ -204,8 +204,10 @@ def verify_sizes(
             while alive:
                 # Of a slow robot one by one: what refutes a cable refutes most of the others.
                 now, alive = (alive[:1], alive[1:]) if is_slow and gives_up else (alive, [])
-                meets = _meet(robot, workspace, places, [cables[k] for k in now], cells, gives_up)
-                totals.add(now, places, meets, counts)
+                meets, lost = _meet(
+                    robot, workspace, places, [cables[k] for k in now], cells, gives_up
+                )
+                totals.add(now, places[lost], places, meets, counts)
                 if alive and _refutes(meets):
                     place = totals.of(now[0]).worst_places[:1]
                     alive = _survivors(robot, workspace, cables, alive, place, totals)
@@ -228,9 +230,9 @@ def _survivors(
     """Return which of the cables one place (1, n_coordinates) does not refute; note the others."""
     survivors = []
     for k in alive:
-        meets = _meet(robot, workspace, place, [cables[k]], np.zeros(1, dtype=np.int64), True)
+        meets, _ = _meet(robot, workspace, place, [cables[k]], np.zeros(1, dtype=np.int64), True)
         if _refutes(meets):
-            totals.add([k], place, meets, counts=False)
+            totals.add([k], place, place, meets, counts=False)
         else:
             survivors.append(k)
     return survivors
@@ -243,20 +245,29 @@ def _meet(
     cables: Sequence[Cable],
     cells: IntArray,
     gives_up: bool,
-) -> Meets:
+) -> tuple[Meets, IntArray]:
+    """Return what the cables meet, and of each a pose that it is not able to hold, if any (n,)."""
     poses, exclude = Poses.at(positions), workspace.hangs_below == "exclude"
     meets = meet(robot, poses, cables, cells, _CELLS, leaves_out_hanging=exclude)
     if not is_quick(robot):
-        return meets
+        return meets, meets.failed.argmax(axis=1)
+    lost = np.zeros(len(cables), dtype=np.int64)
+    refuted = np.zeros(len(positions), dtype=np.int64)
     for row in np.flatnonzero(meets.failed.any(axis=1)).tolist():
+        # What refutes a cable refutes most of the others.
         hard = np.flatnonzero(meets.failed[row])
-        # After 16 hard poses, and each 256, a look whether the cable has failed.
-        edges = [0, 16, *range(256, len(hard) + 256, 256)]
+        hard = hard[np.argsort(-refuted[hard], kind="stable")]
+        # After the first, after 16 and after each 256, a look whether the cable has failed.
+        edges = [0, 1, 16, *range(256, len(hard) + 256, 256)]
         for batch in (hard[a:b] for a, b in pairwise(edges) if a < len(hard)):
             add_slowly(meets, row, robot, poses, cables[row], cells, exclude, batch)
-            if gives_up and meets.failed[row, batch].any():
-                break
-    return meets
+            fails = batch[meets.failed[row, batch]]
+            if len(fails):
+                refuted[fails] += 1
+                lost[row] = fails[0]
+                if gives_up:
+                    break
+    return meets, lost
 
 
 class _Totals:
@@ -271,7 +282,15 @@ class _Totals:
         self.counted, self.overloaded, self.not_held = np.zeros((3, n_tried), dtype=np.int64)
         self.not_held_places = np.full((n_tried, n_coordinates), np.nan)
 
-    def add(self, rows: Sequence[int], positions: FloatArray, meets: Meets, counts: bool) -> None:
+    def add(
+        self,
+        rows: Sequence[int],
+        lost: FloatArray,
+        positions: FloatArray,
+        meets: Meets,
+        counts: bool,
+    ) -> None:
+        """Add what cables met at positions, and where each is lost, if it is."""
         self.tried[rows] += len(positions) * counts
         row, cell = np.nonzero(meets.utilisation > self.utilisation[rows])
         higher = np.asarray(rows)[row], cell
@@ -282,10 +301,7 @@ class _Totals:
         self.overloaded[rows] += meets.overloaded * counts
         fails = meets.failed.sum(axis=1)
         is_first = (self.not_held[rows] == 0) & (fails > 0)
-        at_first = positions[meets.failed.argmax(axis=1)]
-        self.not_held_places[rows] = np.where(
-            is_first[:, None], at_first, self.not_held_places[rows]
-        )
+        self.not_held_places[rows] = np.where(is_first[:, None], lost, self.not_held_places[rows])
         self.not_held[rows] += fails
 
     def of(self, row: int) -> Sampled:
