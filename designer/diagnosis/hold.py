@@ -265,7 +265,8 @@ def structure_left(problem: Problem, settings: Sequence[Setting], rows: BoolArra
     structure = find_structure(residual, covariates, settled=problem.measured.settled)
     swapped = find_swapped(residual, predicted)
     common = find_common(residual, covariates, numbers)
-    events = find_events(residual, predicted, structure, numbers)
+    lengths_m = problem.surroundings(settings).length_m[rows]
+    events = find_events(residual, predicted, lengths_m, structure, numbers)
     named = (*([swapped] if swapped else []), *events, *([common] if common else []))
     return replace(structure, events=named)
 

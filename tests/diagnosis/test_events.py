@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.signal import lfilter
 
 from designer.diagnosis.events import find_common, find_events, find_swapped
 from designer.diagnosis.structure import find_structure
 
 ROWS, CABLES = 100, 3
 NUMBERS = np.arange(1, ROWS + 1)
+LENGTHS_M = np.random.default_rng(9).uniform(3.0, 9.0, (ROWS, CABLES))
 
 
 def readings(seed: int = 0) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
@@ -22,7 +24,26 @@ def readings(seed: int = 0) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarra
 
 def events_in(residual: np.ndarray, predicted: np.ndarray, covariates) -> list[str]:
     structure = find_structure(residual, covariates, settled=True)
-    return [e.text for e in find_events(residual, predicted, structure, NUMBERS)]
+    events = find_events(residual, predicted, LENGTHS_M, structure, NUMBERS)
+    return [event.text for event in events]
+
+
+def test_a_wave_in_its_own_length_is_a_drum_off_centre() -> None:
+    residual, predicted, covariates = readings()
+    residual[:, 1] += 2.0 * np.sin(2.0 * np.pi * LENGTHS_M[:, 1] / 0.47)
+    (text,) = events_in(residual, predicted, covariates)
+    assert text.startswith("a wave in length 2, 0.471 m long and 2 times")
+
+
+def test_noise_that_lasts_is_no_wave_in_a_length_that_moves_slowly() -> None:
+    _, predicted, covariates = readings()
+    slow_m = 6.0 + 3.0 * np.sin(np.outer(np.arange(ROWS) / 8.0, [1.0, 1.1, 1.2]))
+    for seed in range(10):
+        white = np.random.default_rng(seed).normal(size=(ROWS, 2 * CABLES))
+        residual = lfilter([0.3], [1.0, -0.95], white, axis=0)
+        structure = find_structure(residual, covariates, settled=False)
+        events = find_events(residual, predicted, slow_m, structure, NUMBERS)
+        assert not [event for event in events if "wave" in event.text]
 
 
 def test_noise_has_no_events() -> None:

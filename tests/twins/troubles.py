@@ -173,6 +173,18 @@ def _slip(robot: TwinRobot, size: float, seed: int) -> DataSet:
     return _with(dataset, length, dataset.tension_N)
 
 
+def _off_centre(robot: TwinRobot, size: float, seed: int) -> DataSet:
+    """A drum whose axis is not in its middle: a turn of it winds now more, now less."""
+    rng = np.random.default_rng([seed, 10])
+    dataset = make(robot, seed=seed)
+    length = dataset.length_m.copy()
+    cable = int(rng.integers(robot.cables))
+    turn_m = rng.uniform(0.05, 0.15) * float(np.ptp(dataset.clean_length_m[:, cable]))
+    phase = 2.0 * np.pi * (dataset.clean_length_m[:, cable] / turn_m + rng.uniform())
+    length[:, cable] += size * robot.noise_m * np.sin(phase)
+    return _with(dataset, length, dataset.tension_N)
+
+
 def _settlement(robot: TwinRobot, size: float, seed: int) -> DataSet:
     """A tower that sinks from the middle of the campaign on."""
     rng = np.random.default_rng([seed, 9])
@@ -222,6 +234,7 @@ FAILURES: dict[str, tuple[Trouble, float]] = {
     "slip": (_slip, 25.0),
     "settlement": (_settlement, 8.0),
     "swapped": (_swapped, 1.0),
+    "off centre": (_off_centre, 3.5),
 }
 """Something is wrong, and must not be taken for something else."""
 
