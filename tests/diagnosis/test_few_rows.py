@@ -60,6 +60,7 @@ def test_what_predicts_unseen_rows_as_well_is_a_rival(tmp_path) -> None:
     found = diagnosed(YARD3, "drum_scale", 5203, tmp_path, ("length_offset",))
     (finding,) = found.findings
     trials = {trial.effect.key: trial.heldout_gain for trial in found.steps[0].trials}
-    as_good = {key for key, gain in trials.items() if gain >= trials[finding.effect.key]}
+    least = 0.95 * trials[finding.effect.key]
+    as_good = {key for key, gain in trials.items() if gain >= least}
     assert len(as_good) > 1
     assert as_good <= {finding.effect.key, *finding.rivals}
