@@ -15,6 +15,7 @@ from designer.diagnosis.problem import Predictor, Problem
 from designer.diagnosis.statistics import heldout_rows, spread
 from designer.effects.effect import NEEDS, Effect, Setting, as_built, frame_size_m
 from designer.errors import InputError
+from designer.measured.mirrored import left_handed
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured, Noise
 from designer.model.measurements import Measurements
@@ -62,10 +63,19 @@ class Case:
 
     def check_held(self, predict: Predictor) -> None:
         """Refuse poses most of which no cables hold: frames, units or exit points are mixed up."""
-        is_held = ~np.isnan(predict(()).length_m).any(axis=1)
-        if 2 * is_held.sum() < is_held.size:
-            problem = f"the robot as declared can hold {is_held.sum()} of {is_held.size} poses"
-            raise self.fault(problem, "poses between its exit points, in the same frame and unit")
+
+        def n_held(measured: Measured) -> int:
+            return int((~np.isnan(predict.at(measured)(()).length_m).any(axis=1)).sum())
+
+        n_rows, held = self.measured.n_rows, n_held(self.measured)
+        if 2 * held < n_rows:
+            problem = f"the robot as declared can hold {held} of {n_rows} poses"
+            expected = "poses between its exit points, in the same frame and unit"
+            views = left_handed(self.machine.robot, self.measured)
+            most, frame = max((n_held(view), frame) for frame, view in views)
+            if 2 * most > n_rows + held:
+                expected += f"; with {frame}, it can hold {most}"
+            raise self.fault(problem, expected)
 
 
 def case_of(study: Study, measurements: Measurements, measured: Measured) -> Case:

@@ -178,13 +178,15 @@ def _finding(outcome: Outcome, effect: Effect, gain: Gain) -> Finding:
         for p in effect.parameters
     )
     doubt = "no value of it is further from doing nothing than twice its standard deviation"
+    set_up = [r.key for r in rivals if r.cause == "setting_up" and effect.cause == "physics"]
+    other = "it may be an error of setting up: rule out " + " and ".join(dict.fromkeys(set_up))
     return Finding(
         effect=effect,
         parameters=estimate,
         rivals=tuple(dict.fromkeys(r.key for r in rivals)),
         heldout_gain=gain.share,
         heldout_gain_std=gain.std,
-        warnings=(doubt,) * is_near,
+        warnings=(doubt,) * is_near + (other,) * bool(set_up),
     )
 
 

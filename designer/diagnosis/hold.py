@@ -19,6 +19,7 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.errors_of import thirds_of
 from designer.diagnosis.events import find_common, find_events, find_swapped
 from designer.diagnosis.fit import Fit, jacobian, with_places
+from designer.diagnosis.mirrored import find_mirrored
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Reason, Withdrawn
 from designer.diagnosis.search import Searcher, Step, without
@@ -30,6 +31,7 @@ from designer.diagnosis.statistics import (
     without_outliers,
 )
 from designer.diagnosis.structure import (
+    Event,
     Structure,
     covariates_of,
     find_structure,
@@ -199,12 +201,12 @@ def search_and_hold(
 ) -> Outcome:
     """Search; withdraw what does not hold, and fit the rest anew.
 
-    Where sensors are on each other's plugs there is nothing to search for. Parameters as for
-    `Searcher`.
+    Where poses are mirrored or sensors on each other's plugs there is nothing to search for.
+    Parameters as for `Searcher`.
     """
     searcher = Searcher(problem, candidates, effects, rows, progress)
     unsearched = searcher.fit([], thorough=True)
-    if find_swapped(*_residual_and_predicted(problem, unsearched.settings, rows)):
+    if _mistaken(problem, unsearched.settings, rows):
         return Outcome(searcher, problem, rows, (), unsearched, ())
     steps, model, effects_found = searcher.run()
     # The best of what would still earn its place, but with values that nobody would believe.
@@ -263,12 +265,18 @@ def structure_left(problem: Problem, settings: Sequence[Setting], rows: BoolArra
     residual, predicted = _residual_and_predicted(problem, settings, rows)
     numbers = problem.measured.row_numbers[rows]
     structure = find_structure(residual, covariates, settled=problem.measured.settled)
-    swapped = find_swapped(residual, predicted)
+    mistaken = _mistaken(problem, settings, rows)
     common = find_common(residual, covariates, numbers)
     lengths_m = problem.surroundings(settings).length_m[rows]
     events = find_events(residual, predicted, lengths_m, structure, numbers)
-    named = (*([swapped] if swapped else []), *events, *([common] if common else []))
+    named = (*([mistaken] if mistaken else []), *events, *([common] if common else []))
     return replace(structure, events=named)
+
+
+def _mistaken(problem: Problem, settings: Sequence[Setting], rows: BoolArray) -> Event | None:
+    """Return a mirrored frame or exchanged plugs; a frame explains all readings, plugs some."""
+    residual_and_predicted = _residual_and_predicted(problem, settings, rows)
+    return find_mirrored(problem, settings, rows) or find_swapped(*residual_and_predicted)
 
 
 def _residual_and_predicted(

@@ -12,6 +12,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.errors import Fault
 from designer.measured.assign import POSITION, TEMPERATURE_NAME, length_names, tension_names
+from designer.measured.mirrored import left_handed
 from designer.measured.table import LogTable
 from designer.model.measured_data import Measured
 from designer.model.robot import Robot
@@ -151,20 +152,43 @@ def _about(values: Sequence[float]) -> str:
     return f"{float(f'{np.median(values):.2g}'):g}"
 
 
-def _wrong_cable(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fault]:
-    """Tell lengths that shrink as the distance grows, or that follow another cable's distance."""
-    chord_m = cable_geometry(robot, measured.poses).chord_m
-    names = length_names(robot.n_cables)
-    for cable, length_m in enumerate(measured.length_m.T):
-        alike = np.array([_correlation(length_m, other_m) for other_m in chord_m.T])
-        best = int(np.argmax(alike))
-        if alike[cable] < _UNLIKE and alike[best] > _ALIKE:
+def _wrong_cable(robot: Robot, measured: Measured, table: LogTable) -> list[Fault]:
+    """Tell lengths that shrink as the distance grows, or that follow another cable's distance.
+
+    Where all follow their own in a mirrored frame, that is told instead; of two cables only where
+    it suits them better, since on a symmetrical robot their plugs may as well be exchanged.
+    """
+    names, faults = length_names(robot.n_cables), []
+    alike = _alike(robot, measured)
+    likest = alike.max(axis=1)
+    for cable, best in enumerate(np.argmax(alike, axis=1)):
+        if alike[cable, cable] < _UNLIKE and likest[cable] > _ALIKE:
             problem = f"follows the distance to exit point {best + 1}, not to {cable + 1}"
-            expected = "numbers in the order of robot.anchors"
-            yield table.fault(None, names[cable], problem, f"{expected}, or names in {_MAP}")
-        elif alike[cable] < -_UNLIKE:
+            expected = f"numbers in the order of robot.anchors, or names in {_MAP}"
+            faults.append(table.fault(None, names[cable], problem, expected))
+        elif alike[cable, cable] < -_UNLIKE:
             problem = "falls as the distance to its exit point grows"
-            yield table.fault(None, names[cable], problem, f"lengths, or 'scale: -1' in {_MAP}")
+            expected = f"lengths, or 'scale: -1' in {_MAP}"
+            faults.append(table.fault(None, names[cable], problem, expected))
+    if not faults:
+        return faults
+    read = np.isfinite(measured.length_m).any(axis=0)
+    for text, view in left_handed(robot, measured):
+        own = np.diag(_alike(robot, view))[read]
+        better = len(faults) > 2 or np.mean(1.0 - own) < 0.5 * np.mean(1.0 - likest[read])
+        if own.min() > _ALIKE and better:
+            problem = f"suit the lengths with {text}: the frame of the poses is mirrored"
+            expected = f"a right-handed frame, as by 'scale: -1' or other names in {_MAP}"
+            return [Fault(table.name, 1, ", ".join(POSITION), problem, expected)]
+    return faults
+
+
+def _alike(robot: Robot, measured: Measured) -> FloatArray:
+    """Return how each length goes with the distance to each exit point (n_cables, n_cables)."""
+    chord_m = cable_geometry(robot, measured.poses).chord_m
+    return np.array(
+        [[_correlation(own, other) for other in chord_m.T] for own in measured.length_m.T]
+    )
 
 
 def _correlation(reading: FloatArray, prediction: FloatArray) -> float:
