@@ -123,7 +123,10 @@ def _noise_of(
         1.0 + share * (decay**apart @ (1.0 - apart / n_rows) * 2.0 - 2.0)[:, None]
     )
     highest = likelihood.max(axis=0)
-    is_likely = likelihood >= highest - np.minimum(highest - likelihood[0], _NOT_EXCLUDED)
+    above_white = highest - likelihood[0]
+    # White noise is exceeded by less than 1 in each channel; by more in all, none of them is white.
+    together = float(np.sum(np.minimum(above_white, _NOT_EXCLUDED) - 1.0))
+    is_likely = likelihood >= highest - np.clip(together, above_white, _NOT_EXCLUDED)
     chosen = np.argmax(np.where(is_likely, of_mean, -np.inf), axis=0)
     chosen[freedom < _LEAST_FREEDOM] = 0
     of_chosen = variance[chosen, np.arange(n_channels)] / free

@@ -209,10 +209,13 @@ def search_and_hold(
     if _mistaken(problem, unsearched.settings, rows):
         return Outcome(searcher, problem, rows, (), unsearched, ())
     steps, model, effects_found = searcher.run()
-    # The best of what would still earn its place, but with values that nobody would believe.
-    last = [t for t in (steps[-1].trials if steps else ()) if t.earns_its_place]
-    wild = [gone for t in last if (gone := implausible(t.fit, [t.effect]))][:1]
-    outcome = Outcome(searcher, problem, rows, steps, model, effects_found, tuple(wild))
+    # The best of what would still earn its place, but with values that nobody would believe; and of
+    # what would, did the readings not drift.
+    last = steps[-1].trials if steps else ()
+    good = [t for t in last if t.earns_its_place]
+    wild = [gone for t in good if (gone := implausible(t.fit, [t.effect]))][:1]
+    drift = [Withdrawn(t.effect.key, reason=Reason.READINGS_DRIFT) for t in last if t.is_drift][:1]
+    outcome = Outcome(searcher, problem, rows, steps, model, effects_found, (*wild, *drift))
     outcome = outcome.holding((_implausible, _bent), progress)
     rest = without(candidates, *(withdrawal.effect for withdrawal in outcome.withdrawn))
     return replace(outcome, searcher=replace(searcher, candidates=rest))

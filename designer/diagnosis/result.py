@@ -86,6 +86,7 @@ class Reason(Enum):
     IMPLAUSIBLE = "it needs values that are not plausible"
     FAINT = "its values may be chance where neighbouring rows are counted as alike"
     NO_STEP = "what is left still goes with time, so that it was no step"
+    READINGS_DRIFT = "a drift of the readings explains it as well"
     UNSEEN = "it does not help on rows that no fit has seen"
 
 

@@ -49,6 +49,8 @@ class EffectTrial:
         Probability of such a gain by chance in any of the candidates of this round.
     heldout_gain : float
         The same gain summed over parts of the rows that each fit has not seen; NaN if not tried.
+    is_drift : bool
+        Whether a drift of the readings explains it as well; gain and chance are then beside that.
     """
 
     effect: Effect
@@ -56,6 +58,7 @@ class EffectTrial:
     gain: float
     chance: float
     heldout_gain: float
+    is_drift: bool = False
 
     def score(self, variance: float) -> float:
         """Return how good the model is against others of its round, in one unit for all.
@@ -289,7 +292,8 @@ class Searcher:
         gain = beside_drift(self.problem, present, trial.fit, trial.effect, self.rows)
         if gain >= trial.gain:
             return trial
-        return replace(trial, gain=gain, chance=_chance(gain, trial.effect, looks))
+        chance = _chance(gain, trial.effect, looks)
+        return replace(trial, gain=gain, chance=chance, is_drift=chance >= SIGNIFICANCE)
 
     def rivals(
         self, effects: Sequence[Effect], effect: Effect, present: Fit, steps: Sequence[Step]

@@ -43,12 +43,15 @@ def test_what_is_not_in_the_list_is_unexplained(effect, carriers, tmp_path) -> N
     assert found.verdict is DiagnosisVerdict.UNEXPLAINED
 
 
-def test_what_is_withdrawn_says_why(tmp_path) -> None:
+def test_a_winch_that_slips_is_told_with_its_row_and_what_drifts_with_it_is_withdrawn(
+    tmp_path,
+) -> None:
     found = diagnosed(troubled(YARD3, "slip", 4), tmp_path)
-    drifts = [one for one in found.withdrawn if one.reason is Reason.DRIFTS]
-    assert [one.effect for one in drifts] == ["length_offset"]
-    assert drifts[0].covariate in {"time_s", "temperature_C"}
-    assert drifts[0].variation > 0.2
+    assert found.findings == ()
+    assert found.verdict is DiagnosisVerdict.UNEXPLAINED
+    assert "a step at row 40" in [event.text for event in found.structure_after.events]
+    assert found.withdrawn
+    assert {gone.reason for gone in found.withdrawn} <= {Reason.DRIFTS, Reason.READINGS_DRIFT}
 
 
 def test_a_listed_effect_beside_it_is_kept(tmp_path) -> None:
