@@ -14,7 +14,7 @@ beside it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -22,6 +22,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.space import Space
 from designer.model.workspace import Workspace
+from designer.workspace.climbs import Climbs
 from designer.workspace.pool import CELLS_A_SIDE, Pool, local_maxima
 
 Demand = Callable[..., FloatArray]
@@ -186,56 +187,6 @@ def worst_over_samples(workspace: Workspace, demand: Demand, count: int) -> list
     return refine_each_over_branches(workspace.space, demand, starts)
 
 
-@dataclass(slots=True, eq=False)
-class _Climbs:
-    """Climbs of all searches, those of one search beside each other.
-
-    Parameters
-    ----------
-    search, extreme : array (n_climbs,)
-        Which search, and which of its demands.
-    at : array (n_climbs, n_coordinates)
-        Where it is [m, rad].
-    value, radius : array (n_climbs,)
-        The demand there, and the size of the next cloud, as a share of the space.
-    step : array (n_climbs, n_coordinates)
-        The last step [m, rad].
-    """
-
-    search: IntArray
-    extreme: IntArray
-    at: FloatArray
-    value: FloatArray
-    radius: FloatArray
-    step: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.search)
-
-    @property
-    def kind(self) -> IntArray:
-        """Number of its search and extreme together (n_climbs,)."""
-        return np.asarray(self.search * (self.extreme.max(initial=0) + 1) + self.extreme)
-
-    def part(self, rows: IntArray) -> _Climbs:
-        """Return some of them."""
-        return _Climbs(*(getattr(self, field.name)[rows] for field in fields(self)))
-
-    @classmethod
-    def beginning(
-        cls, search: IntArray, extreme: IntArray, at: FloatArray, value: FloatArray, radius: float
-    ) -> _Climbs:
-        """Return climbs that have not moved yet."""
-        return cls(search, extreme, at, value, np.full(len(at), radius), np.zeros_like(at))
-
-    @classmethod
-    def joined(cls, parts: Sequence[_Climbs]) -> _Climbs:
-        """Return the climbs of several parts as one."""
-        names = (field.name for field in fields(cls))
-        climbs = cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
-        return climbs.part(np.argsort(climbs.search, kind="stable"))
-
-
 class _PoseSearch:
     """Several searches, with all that their steps share."""
 
@@ -350,16 +301,16 @@ class _PoseSearch:
             return
         search, extreme = np.concatenate(kinds).T
         at, value = np.concatenate(starts), np.concatenate(demands)
-        climbs = _Climbs.beginning(search, extreme, at, value, 0.5 / CELLS_A_SIDE)
+        climbs = Climbs.beginning(search, extreme, at, value, 0.5 / CELLS_A_SIDE)
         self._climb(climbs, 1e-3)
         climbs = self._finalists(climbs.part(self._in_reach(climbs, climbs.value - value)))
         self._climb(climbs, effort.tolerance, slides=True)
         beside = self._beside(climbs)
         self._climb(beside, 1e-3)
-        finalists = self._finalists(_Climbs.joined([climbs, beside]))
+        finalists = self._finalists(Climbs.joined([climbs, beside]))
         self._climb(finalists, effort.tolerance, slides=True)  # those at their end stay there
 
-    def _beside(self, climbs: _Climbs) -> _Climbs:
+    def _beside(self, climbs: Climbs) -> Climbs:
         """Return starts about the ends of climbs, closer together than the parts of the space.
 
         Two maxima lie that near each other where different cables are the most loaded.
@@ -377,16 +328,16 @@ class _PoseSearch:
         for _ in range(effort.beside):
             highest = np.where(is_apart, demand, -np.inf).argmax(axis=1)
             at, value = places[rows, highest], demand[rows, highest]
-            starts = _Climbs.beginning(ends.search, ends.extreme, at, value, _APART)
+            starts = Climbs.beginning(ends.search, ends.extreme, at, value, _APART)
             chosen.append(starts.part(np.flatnonzero(is_apart[rows, highest])))
             is_apart &= self._is_apart(places, at)
-        return _Climbs.joined(chosen)
+        return Climbs.joined(chosen)
 
     def _is_apart(self, places: FloatArray, at: FloatArray) -> BoolArray:
         """Tell which places (n, n_places, n_coordinates) are far enough from others (n, …)."""
         return np.asarray((np.abs(places - at[:, None]) > _APART * self._size).any(axis=2))
 
-    def _are_close_to_best(self, climbs: _Climbs) -> BoolArray:
+    def _are_close_to_best(self, climbs: Climbs) -> BoolArray:
         """Tell which are among the highest of their extreme, and hardly below the best."""
         order, kind = np.lexsort((-climbs.value, climbs.kind)), climbs.kind
         rank = np.empty(len(order), dtype=np.int64)
@@ -395,7 +346,7 @@ class _PoseSearch:
         is_close = climbs.value > best - _CLOSE * np.abs(best)
         return np.asarray(is_close & (rank < self._effort.revisited))
 
-    def _in_reach(self, climbs: _Climbs, rise: FloatArray) -> IntArray:
+    def _in_reach(self, climbs: Climbs, rise: FloatArray) -> IntArray:
         """Return the climbs that may still become the highest of their extreme.
 
         None rises more from here on than twice what the first part of any has brought; along the
@@ -408,7 +359,7 @@ class _PoseSearch:
         is_open = self._has_border[climbs.search]
         return np.flatnonzero(is_open | (climbs.value >= best - margin))
 
-    def _finalists(self, climbs: _Climbs) -> _Climbs:
+    def _finalists(self, climbs: Climbs) -> Climbs:
         """Leave out climbs that have come to the same place as a better one, or stay far behind."""
         size = np.where(self._size > 0.0, self._size, 1e-300)
         remaining, kind = np.argsort(-climbs.value, kind="stable"), climbs.kind
@@ -422,7 +373,7 @@ class _PoseSearch:
             remaining = remaining[~(apart < 3e-3).all(axis=1)]
         return climbs.part(np.sort(np.concatenate(chosen)))
 
-    def _climb(self, climbs: _Climbs, tolerance: float, *, slides: bool = False) -> None:
+    def _climb(self, climbs: Climbs, tolerance: float, *, slides: bool = False) -> None:
         """Climb until the clouds are smaller than the tolerance, along what does not count."""
         self._phase += 1
         is_corner = self._are_marks(climbs.at)
@@ -457,7 +408,7 @@ class _PoseSearch:
         """Tell which places are landmarks of the space, such as its corners."""
         return np.asarray((at[:, None] == self._marks).all(axis=2).any(axis=1))
 
-    def _ask_about(self, climbs: _Climbs, places: FloatArray) -> FloatArray:
+    def _ask_about(self, climbs: Climbs, places: FloatArray) -> FloatArray:
         """Return each climb's own demand (n_climbs, …) at places (n_climbs, …, n_coordinates)."""
         flat = places.reshape(len(climbs), -1, len(self._size))
         search, extreme = (np.repeat(k, flat.shape[1]) for k in (climbs.search, climbs.extreme))
@@ -465,7 +416,7 @@ class _PoseSearch:
         return demand[np.arange(len(search)), extreme].reshape(places.shape[:-1])
 
     def _slide(
-        self, climbs: _Climbs, trials: FloatArray, values: FloatArray, rng: np.random.Generator
+        self, climbs: Climbs, trials: FloatArray, values: FloatArray, rng: np.random.Generator
     ) -> tuple[FloatArray, FloatArray]:
         """Return the best place (n, n_coordinates) on the border of what counts, and its value.
 
