@@ -179,22 +179,27 @@ def _finding(outcome: Outcome, effect: Effect, gain: Gain) -> Finding:
     )
     doubt = "no value of it is further from doing nothing than twice its standard deviation"
     set_up = [r.key for r in rivals if r.cause == "setting_up" and effect.cause == "physics"]
-    other = "it may be an error of setting up: rule out " + " and ".join(dict.fromkeys(set_up))
     return Finding(
         effect=effect,
         parameters=estimate,
         rivals=tuple(dict.fromkeys(r.key for r in rivals)),
         heldout_gain=gain.share,
         heldout_gain_std=gain.std,
-        warnings=(doubt,) * is_near + (other,) * bool(set_up),
+        warnings=(doubt,) * is_near,
+        rule_out=tuple(dict.fromkeys(set_up)),
     )
 
 
 def _doubts(case: Case, model: Fit) -> Iterator[str]:
     """Yield values of what was unknown that nobody would believe, even of what is unknown."""
     estimates = _estimates(model)
+    # The offset of a winch with another scale is counted from where nothing is wound off.
+    rescaled_winches = {s.effect.cable for s in model.settings if s.effect.id == "winch_scale"}
+    no_homing = {f"offset_{cable}_m" for cable in rescaled_winches}
     for effect in case.given:
         for p in effect.parameters:
+            if effect.id == "length_offset" and p.name in no_homing:
+                continue
             low, high = p.plausible
             estimate = estimates[effect.key][p.name]
             if not low - 2 * estimate.std <= estimate.value <= high + 2 * estimate.std:

@@ -181,19 +181,38 @@ def _promising(
 ) -> list[FloatArray]:
     """Return the start or two from which a linear step leaves least, of equal ones the first.
 
-    The step itself is taken where it does good: far off, where all readings of a winch stand off,
-    the robust loss is so flat that the fit would not find its way.
+    Steps are taken while they do good: far off, where all readings of a winch stand off, the robust
+    loss is so flat that the fit would not find its way.
     """
-    low, high = np.array([p.bounds for effect in effects for p in effect.parameters]).T
-    steps: dict[float, FloatArray] = {}
+    promises: dict[float, FloatArray] = {}
     for vector in starts:
-        residual = problem.residual(settings_at(effects, vector))[is_used]
-        loss, step = _linear_step(residual, jacobian(problem, effects, vector)[is_used])
+        promised, there = _stepped(problem, effects, is_used, vector)
+        promises.setdefault(round(np.log(promised + 1.0), 2), there)
+    least = min(promises)
+    return [promises[loss] for loss in sorted(promises)[:2] if loss < least + 0.1]
+
+
+def _stepped(
+    problem: Problem, effects: Sequence[Effect], is_used: BoolArray, vector: FloatArray
+) -> tuple[float, FloatArray]:
+    """Return the loss that a linear step promises, and where such steps lead; see `_promising`."""
+    low, high = np.array([p.bounds for effect in effects for p in effect.parameters]).T
+    residual = problem.residual(settings_at(effects, vector))[is_used]
+    loss, promise = float(huber(residual).sum()), np.inf
+    for _ in range(8):
+        promised, step = _linear_step(residual, jacobian(problem, effects, vector)[is_used])
         there = np.clip(vector + step, low, high)
         residual_there = problem.residual(settings_at(effects, there))[is_used]
-        is_better = huber(residual_there).sum() < huber(residual).sum()
-        steps.setdefault(round(np.log(loss + 1.0), 2), there if is_better else vector)
-    return [steps[loss] for loss in sorted(steps)[:2] if loss < min(steps) + 0.1]
+        loss_there = float(huber(residual_there).sum())
+        promise = min(promise, promised)
+        if loss_there >= loss:
+            break
+        vector, residual = there, residual_there
+        is_over = loss_there > 0.8 * loss
+        loss = loss_there
+        if is_over:
+            break
+    return promise, vector
 
 
 def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:

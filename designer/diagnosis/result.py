@@ -68,6 +68,8 @@ class Finding:
         that is in doubt.
     warnings : tuple of str
         What speaks against its values.
+    rule_out : tuple of str
+        Of the rivals of what is physics, the errors of setting up: those are to be ruled out first.
     """
 
     effect: Effect = field(metadata={"json": _effect})
@@ -76,6 +78,7 @@ class Finding:
     heldout_gain: float
     heldout_gain_std: float
     warnings: tuple[str, ...]
+    rule_out: tuple[str, ...] = ()
 
 
 class Reason(Enum):

@@ -67,6 +67,11 @@ class EffectTrial:
         """
         return -self.fit.loss / variance - _PENALTY * len(self.effect.parameters)
 
+    def may_precede(self, scores: Sequence[float], variance: float) -> bool:
+        """Whether it is an error of setting up, and as good as the best, nearly."""
+        margin = RIVAL_MARGIN * self.fit.inflation[self.effect.key]
+        return self.effect.cause == "setting_up" and self.score(variance) > max(scores) - margin
+
     @property
     def earns_its_place(self) -> bool:
         """Whether it is no accident, and predicts rows that it has not seen."""
@@ -271,7 +276,8 @@ class Searcher:
         ordered = sorted(trials, key=lambda trial: -trial.score(variance))
         for count, trial in enumerate(ordered):
             # Three are, whatever comes of it: a report shows them.
-            settled = len(answer) >= 3 and any(t.may_be_added for t in answer)
+            good = [t.score(variance) for t in answer if t.may_be_added]
+            settled = len(answer) >= 3 and bool(good) and not trial.may_precede(good, variance)
             if self.progress.is_over and not settled and trial.chance < SIGNIFICANCE:
                 self.progress.leave_out(f"{trial.effect.key} and below on rows not seen")
                 return answer + ordered[count:]

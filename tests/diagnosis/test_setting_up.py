@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from report_parts import diagnosis_page
 from scipy.spatial.transform import Rotation
 from twins.dataset import DataSet, make
 from twins.robots import HALL6, HALL8, YARD3, TwinRobot
@@ -144,6 +145,33 @@ def test_attachments_may_be_unknown(tmp_path: Path) -> None:
     assert [moved[name] for name in ("x_m", "y_m", "z_m")] == pytest.approx(
         [at[name] for name in ("x_m", "y_m", "z_m")], abs=0.004
     )
+
+
+@pytest.mark.slow
+def test_a_wrong_mechanical_advantage_is_told_where_exit_points_are_unknown(tmp_path: Path) -> None:
+    """They would move by metres to make up for it."""
+    dataset = make(YARD3, {"winch_scale": {"cable": 3.0, "scale": 2.0}}, seed=7502)
+    found = diagnosed(dataset, tmp_path, unknown=("anchors", "length_offset"))
+    (finding,) = found.findings
+    assert finding.effect.key == "winch_scale of cable 3"
+    assert list(finding.parameters) == ["scale"]  # its zero is unknown with all the others
+    assert finding.parameters["scale"].value == pytest.approx(2.0, abs=3e-4)
+    assert found.doubts == ()
+    for given in found.given:
+        if given.effect.id == "anchor_offset":
+            assert np.abs(list(given.values.values())).max() < 0.02
+
+
+@pytest.mark.slow
+def test_physics_tells_which_error_of_setting_up_to_rule_out(tmp_path: Path) -> None:
+    """Lengths alone, of few rows, tell the stretch of one cable badly from its homing."""
+    dataset = make(YARD3, {"cable_modulus": {"cable": 1.0, "scale": 0.75}}, rows=40, seed=7503)
+    found = diagnosed(replace(dataset, tension_N=np.full_like(dataset.tension_N, np.nan)), tmp_path)
+    (finding,) = found.findings
+    assert finding.effect.key == "cable_modulus of cable 1"
+    assert finding.rule_out == ("length_offset",)
+    (rivals,) = (s for s in diagnosis_page(found).sureness if s.title == "Rivals")
+    assert "rule out length_offset first" in rivals.text
 
 
 def mirrored(dataset: DataSet, mirror: np.ndarray) -> DataSet:
