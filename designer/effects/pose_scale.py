@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from designer.effects.effect import Effect, Parameter, Size, Values
+from designer.effects.pose_shift import in_plane
+from designer.model.machine import Machine
 from designer.model.robot import Poses
 from designer.units import NUMBER
 
@@ -18,8 +20,9 @@ SCALE = Parameter(
 )
 
 
-def _change(poses: Poses, values: Values) -> Poses:
-    return replace(poses, position_m=poses.position_m / values["scale"])
+def _change(poses: Poses, values: Values, *, machine: Machine) -> Poses:
+    moves = poses.position_m / values["scale"] - poses.position_m
+    return replace(poses, position_m=poses.position_m + in_plane(machine, moves))
 
 
 EFFECT = Effect(
@@ -31,4 +34,5 @@ EFFECT = Effect(
     on_poses=_change,
     cause="setting_up",
     needs=frozenset({"pose"}),
+    takes_machine=True,
 )

@@ -20,13 +20,17 @@ def size_of_shift(machine: Machine) -> Size:
     return Size(1e-3 * size, bounds=(-size, size), plausible=(-0.5 * size, 0.5 * size))
 
 
+def in_plane(machine: Machine, moves_m: FloatArray) -> FloatArray:
+    """Return moves (..., 3) [m], of a planar robot without what is across its plane."""
+    if not machine.robot.is_planar:
+        return moves_m
+    across = machine.robot.level[1]
+    return np.asarray(moves_m - (moves_m @ across)[..., None] * across)
+
+
 def shift_of(machine: Machine, values: Values) -> FloatArray:
     """Return x, y and z (3,) [m], in the plane of a planar robot."""
-    shift = np.array([values.get(f"{axis}_m", 0.0) for axis in "xyz"])
-    if machine.robot.is_planar:
-        across = machine.robot.level[1]
-        shift = shift - across * (across @ shift)
-    return shift
+    return in_plane(machine, np.array([values.get(f"{axis}_m", 0.0) for axis in "xyz"]))
 
 
 def shift_parameters() -> tuple[Parameter, ...]:

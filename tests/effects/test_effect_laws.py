@@ -286,6 +286,8 @@ def test_a_planar_robot_is_shifted_in_its_plane(machine):
     moved = poses_with(slanting_machine, Poses.at(np.zeros((1, 3))), "pose_shift", x_m=0.2)
     assert moved.position_m == pytest.approx(np.array([[-0.1, -0.1, 0.0]]), abs=1e-12)
     assert not SHIPPED.by_id["pose_frame"].on(slanting_machine)
+    scaled = poses_with(slanting_machine, Poses.at([[2.0, 0.0, 4.0]]), "pose_scale", scale=2.0)
+    assert scaled.position_m == pytest.approx(np.array([[1.5, -0.5, 2.0]]), abs=1e-12)
 
 
 def test_attachment_offset_is_in_the_platforms_frame(machine, six_cable_robot):
