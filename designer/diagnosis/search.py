@@ -105,10 +105,10 @@ class Step:
     passed_over: Mapping[str, float] = field(default_factory=dict)
 
 
-def _simplest(trials: Sequence[EffectTrial]) -> EffectTrial | None:
-    """Of the best that earn their place, and those nearly as good, the one to name.
+def _best(trials: Sequence[EffectTrial]) -> list[EffectTrial]:
+    """Of the best that earn their place, and those nearly as good, return those to name.
 
-    An error of setting up before physics, and of either the one with fewest numbers.
+    First an error of setting up where there is one, then the one with fewest numbers of all.
     """
     good = [t for t in trials if t.may_be_added]
     scores = [t.score(_best_variance(good)) for t in good]
@@ -117,11 +117,9 @@ def _simplest(trials: Sequence[EffectTrial]) -> EffectTrial | None:
         for t, score in zip(good, scores, strict=True)
         if score > max(scores) - RIVAL_MARGIN * t.fit.inflation[t.effect.key]
     ]
-    return min(
-        close,
-        key=lambda t: (t.effect.cause != "setting_up", len(t.effect.parameters)),
-        default=None,
-    )
+    by_numbers = sorted(close, key=lambda t: len(t.effect.parameters))
+    set_up = [t for t in by_numbers if t.effect.cause == "setting_up"]
+    return list(dict.fromkeys([*set_up[:1], *by_numbers[:1]]))
 
 
 def _chance(gain: float, effect: Effect, looks: int) -> float:
@@ -177,21 +175,29 @@ class Searcher:
             visited.append(set(effects))
             trials, passed_over = self.trials(effects, present, f"round {len(steps) + 1}")
             is_over = self.progress.is_over
-            best = None if is_over else _simplest(trials)
-            if trials:
-                added = best.effect if best else None
-                steps.append(Step(tuple(trials), added, not is_over, passed_over))
+            best = [] if is_over else _best(trials)
             # More that a machine lacks at once are not to be told apart by one log.
-            if best is None or len(effects) == 5:
+            extended = [self._extended(effects, t, trials) for t in best * (len(effects) < 5)]
+            # Physics that makes more of the others superfluous is the simpler cause.
+            fewest = min(range(len(extended)), key=lambda k: len(extended[k]), default=0)
+            if trials:
+                added = best[fewest].effect if best else None
+                steps.append(Step(tuple(trials), added, not is_over, passed_over))
+            if not extended:
                 break
-            self.progress(f"found {best.effect.key}")
-            # What is worse alone is seldom better in the place of a member.
-            outsiders = [t.effect for t in trials[:8]]
-            effects = self._exchanged([*effects, best.effect], best.fit, outsiders)
-            effects = self._pruned(effects)
-            present = self.fit(effects, best.fit)
+            effects = extended[fewest]
+            present = self.fit(effects, best[fewest].fit)
         effects = self._predicting(effects, present)
         return tuple(steps), self.fit(effects, present, thorough=True), tuple(effects)
+
+    def _extended(
+        self, effects: Sequence[Effect], trial: EffectTrial, trials: Sequence[EffectTrial]
+    ) -> list[Effect]:
+        """Return the effects with one more, exchanged and pruned."""
+        self.progress(f"found {trial.effect.key}")
+        # What is worse alone is seldom better in the place of a member.
+        outsiders = [t.effect for t in trials[:8]]
+        return self._pruned(self._exchanged([*effects, trial.effect], trial.fit, outsiders))
 
     def fit(
         self,
