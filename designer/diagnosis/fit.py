@@ -225,16 +225,28 @@ def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) ->
 def _slopes(
     problem: Problem, effects: Sequence[Effect], vector: FloatArray, places: slice
 ) -> FloatArray:
-    """Return the slopes of the residual in some of the parameters, by their places."""
-    residual = problem.residual(settings_at(effects, vector))
+    """Return the slopes of the residual in some of the parameters, by their places.
+
+    A row that the model holds on one side only tells its slope there; one that it does not hold at
+    all has none.
+    """
+    sigma, read = problem.sigma, problem.measured.readings
+    predicted = problem.predicted(settings_at(effects, vector)).stacked
     parameters = [p for effect in effects for p in effect.parameters]
     slopes = []
     for k, p in [*enumerate(parameters)][places]:
-        moved = vector.copy()
         # So short that one side will do, and far above the solver's residual.
-        moved[k] += 1e-3 * max(p.typical, 0.1 * abs(vector[k] - p.neutral))
-        residual_moved = problem.residual(settings_at(effects, moved))
-        slopes.append((residual_moved - residual) / (moved[k] - vector[k]))
+        step = 1e-3 * max(p.typical, 0.1 * abs(vector[k] - p.neutral))
+        slope = np.full_like(read, np.nan)
+        for side in (step, -step):
+            is_lost = np.isnan(slope) & ~np.isnan(read) & ~np.isnan(predicted)
+            if not is_lost.any():
+                break
+            moved = vector.copy()
+            moved[k] += side
+            change = problem.predicted(settings_at(effects, moved)).stacked - predicted
+            slope = np.where(is_lost, -change / (moved[k] - vector[k]) / sigma, slope)
+        slopes.append(np.where(np.isnan(read), np.nan, np.nan_to_num(slope)))
     return np.stack(slopes, axis=-1)
 
 
