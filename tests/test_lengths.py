@@ -149,3 +149,23 @@ def test_load_cases_are_said_to_be_left_out(tmp_path, designer) -> None:
         "without the load cases"
         not in designer("lengths", str(study(tmp_path)), "--poses", str(poses(tmp_path))).out
     )
+
+
+def test_effects_that_are_not_in_the_lengths_are_named(tmp_path, designer) -> None:
+    effects = (
+        "effects:\n"
+        "  winch_scale: {cable: 2, scale: 2.0}\n"
+        "  pose_shift: {z_m: 0.1}\n"
+        "  elastic_modulus: {scale: 0.9}\n"
+    )
+    found = designer(
+        "lengths",
+        str(study(tmp_path, STUDY + WORKSPACE + effects)),
+        "--poses",
+        str(poses(tmp_path)),
+    )
+    told = " ".join(found.out.split())
+    assert "winch_scale of cable 2" in told
+    assert "pose_shift" in told
+    assert "elastic_modulus" not in told
+    assert "do not reach a design, and are not in them" in told

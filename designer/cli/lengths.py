@@ -40,6 +40,7 @@ def lengths(
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
     from designer.io.output import write_file
     from designer.io.poses import read_poses
+    from designer.study import declared_settings
 
     study, plugins = study_of(config, no_plugins)
     table = read_poses(poses, study.robot)
@@ -60,6 +61,13 @@ def lengths(
     _print_lengths(answer, path)
     if study.load_cases:
         show("These are of the platform at rest, without the load cases of the study.")
+    unseen = [s.effect.key for s in declared_settings(study) if not s.effect.reaches_design]
+    if unseen:
+        show(
+            f"Lengths of the ropes themselves, at poses in the robot's frame: {', '.join(unseen)} "
+            "of the study's effects do not reach a design, and are not in them.",
+            soft_wrap=True,
+        )
     return bool(answer.holds.all())
 
 

@@ -204,7 +204,11 @@ def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -
     force = added_force_N(built, measured)
     poses = problem.predict.placed(settings).poses.part(rows)
     forward_statics = solve_forward(
-        built.robot, built.cable, true.length_m[rows], poses, None if force is None else force[rows]
+        built.robot,
+        built.cables,
+        true.length_m[rows],
+        poses,
+        None if force is None else force[rows],
     )
     block = block_of(len(chosen))[rows]
     away = np.linalg.norm(forward_statics.poses.position_m - poses.position_m, axis=-1)

@@ -18,7 +18,7 @@ def _change(
     readings: Readings, values: Values, measured: Measured, *, machine: Machine
 ) -> Readings:
     mean = pull_of(machine, measured, readings.tension_N).mean_N
-    stretch = 1.0 + mean / machine.cable.axial_stiffness_N
+    stretch = 1.0 + mean / machine.cables.axial_stiffness_N
     more = -values["toe_strain"] * np.expm1(-mean / values["toe_tension_N"])
     # Stretched length stays; what is unstrained of it shrinks by the strain that is added.
     return replace(readings, length_m=readings.length_m * stretch / (stretch + more))

@@ -33,10 +33,19 @@ def problem_and_case(robot, effects, folder, **how):
 
 @pytest.mark.parametrize("robot", [YARD3, HALL6, HALL8], ids=lambda robot: robot.name)
 def test_lengths_without_noise_lead_to_the_pose(robot, tmp_path) -> None:
-    truth = {"elastic_modulus": {"scale": 0.8}, "drum_scale": {"scale": 1.002}}
+    truth = {
+        "elastic_modulus": {"scale": 0.8},
+        "cable_modulus": {"cable": 2, "scale": 0.7},
+        "drum_scale": {"scale": 1.002},
+    }
     problem, case = problem_and_case(robot, truth, tmp_path, noise=0.0)
-    effects = {effect.key: effect for effect in case.candidates}
-    settings = [Setting(effects[key], values) for key, values in truth.items()]
+    settings = [
+        Setting(
+            next(e for e in case.candidates if (e.id, e.cable) == (key, values.get("cable"))),
+            {name: value for name, value in values.items() if name != "cable"},
+        )
+        for key, values in truth.items()
+    ]
     heldout = heldout_rows(48)
     blind = foretell(problem, (), heldout)
     found = foretell(problem, settings, heldout)
