@@ -111,11 +111,17 @@ def _best(trials: Sequence[EffectTrial]) -> list[EffectTrial]:
     First an error of setting up where there is one, then the one with fewest numbers of all.
     """
     good = [t for t in trials if t.may_be_added]
-    scores = [t.score(_best_variance(good)) for t in good]
+    variance = _best_variance(good)
+    best = max(good, key=lambda t: t.score(variance), default=None)
+    if best is None:
+        return []
+    # By the fit that has more to tell: what the best explains lasts in what a worse one leaves.
+    few = best.fit.inflation[best.effect.key]
     close = [
         t
-        for t, score in zip(good, scores, strict=True)
-        if score > max(scores) - RIVAL_MARGIN * t.fit.inflation[t.effect.key]
+        for t in good
+        if t.score(variance)
+        >= best.score(variance) - RIVAL_MARGIN * min(few, t.fit.inflation[t.effect.key])
     ]
     by_numbers = sorted(close, key=lambda t: len(t.effect.parameters))
     set_up = [t for t in by_numbers if t.effect.cause == "setting_up"]
