@@ -36,6 +36,7 @@ from designer.cli.options import (
     output_option,
     study_of,
 )
+from designer.cli.plan import write_plan
 from designer.cli.schema import schema, write_with_schema
 from designer.cli.sweep import sweep
 from designer.cli.verify import verify
@@ -221,6 +222,28 @@ def diagnose(
         Path | None,
         option("--data", metavar="CSV", text="Measured data, instead of the study's."),
     ] = None,
+    plans: Annotated[
+        bool, typer.Option("--plan", help="Before there are data: which poses to measure?")
+    ] = False,
+    poses: Annotated[
+        int | None, typer.Option("--poses", metavar="N", help="With --plan: how many poses.")
+    ] = None,
+    unknown: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--unknown", metavar="NAME", help="With --plan: instead of measurements.unknown."
+        ),
+    ] = None,
+    length_noise: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LENGTH", help="With --plan: deviation of a length, instead of the study's."
+        ),
+    ] = None,
+    tension_noise: Annotated[
+        str | None,
+        typer.Option(metavar="FORCE", help="With --plan: deviation of a tension, as before."),
+    ] = None,
     template: Template = None,
     no_plugins: NoPlugins = False,
 ) -> bool:
@@ -231,12 +254,25 @@ def diagnose(
     `uncertainty:`; `designer report` on it uses both. With --check
     nothing is searched, and check.html, check.pdf and diagnosis.json go into CONFIG-check.
 
+    With --plan there are no data yet: it chooses the poses that tell most of what is unknown, and
+    writes plan.csv for the controller, plan.html, plan.pdf and plan.json, with the deviations to
+    expect, into CONFIG-plan; with -o FILE.csv the table alone. What is unknown, what will be read
+    and its noise stand under `measurements:`, whose file need not be there, or in options.
+
     Example:  designer diagnose built-crane.yaml
     A month later:  designer diagnose --check built-crane.diagnosed.yaml --data new.csv
+    Before:  designer diagnose --plan crane.yaml --unknown anchors --length-noise "1 mm"
 
-    Exit status 0: the model, with what was found, agrees with the data. 1: something is left or
-    not plausible, or declared effects do not help. 2: the input is wrong.
+    Exit status 0: the model, with what was found, agrees with the data, or the plan tells all that
+    is unknown. 1: something is left or not plausible, declared effects do not help, or the plan
+    leaves something unknown. 2: the input is wrong.
     """
+    asked = (poses, unknown, length_noise, tension_noise)
+    if plans:
+        is_alone = not checks and data is None
+        return write_plan(config, output, *asked, is_alone, template, no_plugins=no_plugins)
+    if any(asked):
+        raise InputError.at("designer diagnose", "has options of a plan", "--plan beside them")
     from designer.cli.tables import print_check, print_diagnosis
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out
     from designer.io.output import file_names, output_folder

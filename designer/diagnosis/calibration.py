@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import HUBER, Fit, jacobian
 from designer.diagnosis.problem import Problem
 from designer.effects.effect import Effect, Parameter
@@ -122,18 +122,13 @@ def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
     slopes = slopes[..., has_slope]
     change = np.full((len(residual), len(pairs)), np.nan)
     change[:, has_slope] = _changes(slopes, np.nan_to_num(weight * residual))
-    triangle = np.linalg.qr(slopes.reshape(-1, slopes.shape[-1]), mode="r")
-    _, singular, directions = np.linalg.svd(triangle)
-    # Along these no reading changes: a fit stays where it came to, and its deviation means nothing.
-    free = directions[singular <= _NO_SLOPE * singular[0]]
+    n_rows = int(np.isfinite(residual).any(axis=1).sum())
+    told = told_by(slopes, n_rows)
     std = fit.std.copy()
-    std[has_slope] = np.where((free**2).sum(axis=0) > _SHARE, np.inf, std[has_slope])
+    std[has_slope] = np.where(told.is_settled, std[has_slope], np.inf)
     covariance = np.where(np.isfinite(np.outer(std, std)), fit.covariance, np.nan)
     sizes = np.abs(np.nan_to_num(change * typical / std))
     row = np.argmax(sizes, axis=0)
-    n_rows = int(np.isfinite(residual).any(axis=1).sum())
-    with np.errstate(divide="ignore"):
-        logarithm = np.log(singular)
     return Calibration(
         tuple(
             Calibrated(
@@ -146,9 +141,42 @@ def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
             for k, pair in enumerate(pairs)
         ),
         covariance,
-        condition=float(singular[0] / singular[-1]) if singular[-1] > 0.0 else math.inf,
-        observability=float(np.exp(np.mean(logarithm)) / math.sqrt(n_rows)),
+        told.condition,
+        told.observability,
     )
+
+
+class Told(NamedTuple):
+    """What slopes tell of parameters; condition and observability as in `Calibration`.
+
+    Parameters
+    ----------
+    is_settled : array (n_parameters,) of bool
+        Which have a value of their own.
+    std : array (n_parameters,)
+        Standard deviations, in units of their typical changes; inf where not settled.
+    """
+
+    is_settled: BoolArray
+    std: FloatArray
+    condition: float
+    observability: float
+
+
+def told_by(slopes: FloatArray, n_rows: int) -> Told:
+    """Return what slopes (…, n_parameters), in units of noise per typical change, tell."""
+    triangle = np.linalg.qr(slopes.reshape(-1, slopes.shape[-1]), mode="r")
+    _, singular, directions = np.linalg.svd(triangle)
+    singular = np.pad(singular, (0, len(directions) - len(singular)))
+    # Along these no reading changes: a fit stays where it came to, and its deviation means nothing.
+    is_free = singular <= _NO_SLOPE * singular[0]
+    is_settled = (directions[is_free] ** 2).sum(axis=0) <= _SHARE
+    std = np.linalg.norm(directions[~is_free] / singular[~is_free, None], axis=0)
+    with np.errstate(divide="ignore"):
+        mean = float(np.exp(np.mean(np.log(singular))))
+    condition = float(singular[0] / singular[-1]) if singular[-1] > 0.0 else math.inf
+    settled = np.where(is_settled, std, np.inf)
+    return Told(is_settled, settled, condition, mean / math.sqrt(n_rows))
 
 
 def _changes(slopes: FloatArray, residual: FloatArray) -> FloatArray:
