@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -218,7 +218,7 @@ def _plan(
     return Plan(
         study,
         problem.noise,
-        statics=solve_sagging(statics.robot, Poses.at(places[route]), cable),
+        statics=solve_sagging(statics.robot, Poses.at(places[route]), _that_can_break(cable)),
         places=places[route],
         n_candidates=len(places),
         expected=tuple(
@@ -251,11 +251,11 @@ def candidates(
     measured = Measured(Poses.at(places), unread, unread, settled=True)
     machine = case_of(study, measurements, measured).machine
     robot = as_built(machine, declared_settings(study, machine)).robot
-    statics = solve_sagging(robot, measured.poses, cable)
+    statics = solve_sagging(robot, measured.poses, _that_can_break(cable))
     tension_N = statics.cable_tension_N
     held = statics.is_solved & (tension_N <= cable.allowable_tension_N).all(axis=-1)
     if not held.any():
-        problem = f"the robot holds none of {len(places)} poses with {cable}"
+        problem = f"the robot holds none of {len(places)} poses with its cable"
         raise InputError([study.source.fault("workspace.region", problem, "poses that it holds")])
     length_m, tension_N = statics.length_m[held], statics.exit_tension_N[held]
     measured = Measured(
@@ -278,6 +278,16 @@ def candidates(
     sizes = Noise(noise.get("length", math.inf), noise.get("tension", math.inf), "declared")
     problem_there = Problem(measured, case.predictor(), sizes)
     return problem_there, list(case.given), statics, places[held]
+
+
+def _that_can_break(cable: Cable) -> Cable:
+    """Return a cable with a strength: at twice its length at the latest it breaks.
+
+    The internal forces of a robot with cables to spare are shared out by what the cables allow.
+    """
+    return replace(
+        cable, allowable_tension_N=min(cable.allowable_tension_N, cable.axial_stiffness_N)
+    )
 
 
 def _places(study: Study) -> FloatArray:

@@ -11,7 +11,7 @@ import pytest
 import yaml
 from test_cli import designer
 from twins.dataset import make
-from twins.robots import HALL6, YARD3
+from twins.robots import HALL6, HALL8, YARD3
 
 from designer.diagnosis.calibration import told_by
 from designer.diagnosis.fit import fit
@@ -105,6 +105,13 @@ def test_poses_of_a_plan_are_held_within_strength(tmp_path) -> None:
     answer = plan(study, rope, weak, 8)
     assert answer.n_candidates < len(every[3])
     assert (answer.statics.cable_tension_N <= limit_N).all()
+
+
+def test_spare_cables_of_unknown_strength_are_planned_for(tmp_path) -> None:
+    study = read_study(config(tmp_path, HALL8))
+    answer = plan(study, study.measurements, study.measurements.cable(), 8)
+    assert answer.n_candidates > 100
+    assert answer.is_positive
 
 
 def test_table_for_the_controller(tmp_path, designer) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.diagnosis.plan import Plan
+from designer.report import format as fmt
 from designer.report.figures import canvas, palette
 
 
@@ -14,7 +15,7 @@ def poses_chart(plan: Plan) -> str:
     workspace = plan.study.workspace
     assert workspace is not None
     with canvas.drawing():
-        figure = canvas.sheet(90.0, keeps_aspect=True)
+        figure = canvas.sheet(55.0, keeps_aspect=True)
         for axes, plane in zip(figure.subplots(1, 2), ([0, 1], [0, 2]), strict=True):
             canvas.region(axes, workspace.region, plane)
             axes.plot(*exits_m[:, plane].T, "s", color=palette.INK, markersize=3.5)
@@ -43,6 +44,8 @@ def curves_chart(plan: Plan) -> str | None:
             axes.plot(plan.sizes, std, "o-", color=f"C{k}", markersize=3.0, label=label)
         axes.axvline(len(plan.places), color=palette.FAINT, linewidth=0.6)
         axes.set_yscale("log")
+        for formatted in (axes.yaxis.set_major_formatter, axes.yaxis.set_minor_formatter):
+            formatted(lambda value, _: fmt.number(value, 2))
         axes.set_xlabel("poses")
         axes.set_ylabel("largest deviation")
         canvas.grid_lines(axes, "both")
