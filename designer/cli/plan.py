@@ -43,6 +43,11 @@ def write_plan(
 
     study, plugins = study_of(config, no_plugins)
     _check_options(study, n_poses, unknown or ())
+    if study.measurements is None and not (unknown and (length_noise or tension_noise)):
+        expected = "unknown and noise there, or --unknown with --length-noise or --tension-noise"
+        raise InputError([study.source.fault("measurements", "is missing", expected)])
+    length_m = _noise("--length-noise", length_noise, LENGTH)
+    tension_N = _noise("--tension-noise", tension_noise, FORCE)
     announce_compiling()
 
     from designer.analysis.lengths import Lengths
@@ -55,9 +60,7 @@ def write_plan(
         measurements = _measurements(study, cable)
         if unknown:
             measurements = replace(measurements, unknown=tuple(unknown))
-        if length_noise or tension_noise:
-            length_m = _noise("--length-noise", length_noise, LENGTH)
-            tension_N = _noise("--tension-noise", tension_noise, FORCE)
+        if length_m or tension_N:
             measurements = replace(measurements, length_noise_m=length_m, tension_noise_N=tension_N)
         answer = plan(study, measurements, cable, n_poses, bars)
         table = _table(
@@ -79,6 +82,10 @@ def write_plan(
 
 
 def _check_options(study: Study, n_poses: int | None, unknown: Sequence[str]) -> None:
+    """Refuse at once what would be refused once a rope has been chosen."""
+    if study.workspace is None:
+        expected = "the region in which poses can be measured"
+        raise InputError([study.source.fault("workspace", "is missing", expected)])
     if n_poses is not None and n_poses < 1:
         raise InputError.at("--poses", f"is {n_poses}", "a whole number, at least 1")
     known = {name for e in study.known_effects.effects for name in (e.id, e.also_called) if name}

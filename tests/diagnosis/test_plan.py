@@ -150,3 +150,14 @@ def test_options_of_a_plan_ask_for_it(tmp_path, designer) -> None:
     outcome = designer("diagnose", str(config(tmp_path)), "--poses", "3")
     assert outcome.status == 2
     assert "--plan beside them" in outcome.err
+
+
+@pytest.mark.parametrize("part", ["workspace", "measurements"])
+def test_a_study_without_a_part_that_a_plan_needs(part, tmp_path, designer) -> None:
+    path = config(tmp_path)
+    content = yaml.safe_load(path.read_text())
+    content = {key: value for key, value in content.items() if key not in {part, "selection"}}
+    path.write_text(yaml.safe_dump(content))
+    outcome = designer("diagnose", "--plan", str(path))
+    assert outcome.status == 2
+    assert f"{part}: is missing" in outcome.err
