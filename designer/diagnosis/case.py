@@ -11,13 +11,14 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import fit
 from designer.diagnosis.free_poses import FreePredictor, first_poses
+from designer.diagnosis.gauge import in_a_held_frame
 from designer.diagnosis.problem import Predictor, Problem
 from designer.diagnosis.statistics import heldout_rows, spread
 from designer.effects.effect import NEEDS, Effect, Setting, as_built, frame_size_m
 from designer.errors import InputError
 from designer.measured.mirrored import left_handed
 from designer.model.machine import Machine
-from designer.model.measured_data import Measured, Noise
+from designer.model.measured_data import KINDS, Measured, Noise
 from designer.model.measurements import Measurements
 from designer.study import Study, declared_settings
 
@@ -106,8 +107,13 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     skipped = {e.key: _missing(e, recorded) or _too_few(e, measured) for e in effects}
     visible = [e for e in effects if not skipped[e.key]]
     given = tuple(
-        _as_unknown(e, measurements, machine) for e in visible if e.is_among(measurements.unknown)
+        _as_unknown(_less_known_zero(e, fixed), measurements, machine)
+        for e in visible
+        if e.is_among(measurements.unknown)
     )
+    if not measured.has_poses:
+        given, note = in_a_held_frame(given, machine.robot, measured)
+        measured = replace(measured, notes=(*measured.notes, *note))
     given_keys = {e.key for e in given}
     beside = [e.beside({e.id for e in given}) for e in visible if e.key not in given_keys]
     skipped |= {e.key: "is a part of what is unknown" for e in beside if not e.parameters}
@@ -148,6 +154,12 @@ def _as_unknown(effect: Effect, measurements: Measurements, machine: Machine) ->
         low, high = ends if limit_m is None else (-limit_m, limit_m)
         parameters.append(replace(p, size=replace(p.size_here, plausible=(low, high))))
     return replace(effect, parameters=tuple(parameters))
+
+
+def _less_known_zero(effect: Effect, fixed: Sequence[Setting]) -> Effect:
+    """Return a winch's scale without its zero, where the zeros of all are declared."""
+    is_declared = any(setting.effect.id == "length_offset" for setting in fixed)
+    return effect.beside({"length_offset"} if effect.id == "winch_scale" and is_declared else ())
 
 
 def _missing(effect: Effect, recorded: frozenset[str]) -> str:
@@ -198,8 +210,9 @@ def first_noise(
         Unknown from the start: fitted first.
     """
     declared = measurements.declared_noise
-    if len(declared) == 2:
-        return Noise(declared["length"], declared["tension"], "declared")
+    read = {kind.name for kind in KINDS if np.isfinite(kind.of(measured)).any()}
+    if read <= declared.keys():
+        return Noise(declared.get("length", 1.0), declared.get("tension", 1.0), "declared")
     length, tension = (
         float(np.nanmedian(np.abs(kind))) if np.isfinite(kind).any() else 1.0
         for kind in (measured.length_m, measured.tension_N)

@@ -258,7 +258,7 @@ def _without(case: Case, hidden: Mapping[str, str]) -> Case:
 
 def _check_size(case: Case, heldout: BoolArray) -> None:
     measured = case.measured
-    given_up = 0 if measured.has_poses else case.machine.robot.n_cables
+    given_up = 0 if measured.has_poses else case.predictor().row_unknowns
     n_free = int(np.maximum(measured.n_readings[~heldout] - given_up, 0).sum())
     unknown = sum(len(effect.parameters) for effect in case.given)
     if n_free <= unknown + 2:

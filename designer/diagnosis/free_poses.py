@@ -43,11 +43,32 @@ class FreePredictor(Predictor):
     """Predicts readings of rows without poses, each where it suits its own readings best."""
 
     _near: dict[Kind, tuple[Poses, FloatArray]] = field(init=False, default_factory=dict)
+    _first: Poses = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Keep where each row started: it starts there again where other effects lose it."""
+        self._first = self.measured.poses
 
     @property
     def row_unknowns(self) -> int:
-        """The pose and the internal forces: as many as cables."""
-        return self.machine.robot.n_cables
+        """The pose, and the internal forces where tensions tell them."""
+        robot = self.machine.robot
+        return robot.n_cables if self.has_tensions else robot.degrees_of_freedom
+
+    @property
+    def has_tensions(self) -> bool:
+        """Whether internal forces can be taken from what was read.
+
+        Lengths alone tell the pose and how well the cables fit together. Internal forces are then
+        the least that hold the platform, as the robot's least tension has them.
+        """
+        return bool(np.isfinite(self.measured.tension_N).any())
+
+    def placed(self, settings: Sequence[Setting]) -> Measured:
+        """Return the rows; without readings where internal forces shall not follow them."""
+        placed = super().placed(settings)
+        every = np.ones(placed.n_rows, dtype=np.bool_)
+        return placed if self.has_tensions else placed.without_readings(every)
 
     def __call__(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
         """Return what the sensors would show with these effects, in the poses that suit them."""
@@ -74,6 +95,10 @@ class FreePredictor(Predictor):
         start = self._near.get(kind, self._near.get((noise,)))
         poses, slopes = start if start else (self.measured.poses, None)
         answer, residual = self._left_at(poses, settings, noise)
+        is_lost = np.asarray((np.abs(residual) >= _UNHELD).any(axis=1))
+        if is_lost.any():  # without a slope it would never come back
+            poses, slopes = _either(is_lost, self._first, poses), None
+            answer, residual = self._left_at(poses, settings, noise)
         share = np.ones(len(residual))
         for _ in range(6):  # turns at most
             slopes = self._slopes_at(poses, settings, noise) if slopes is None else slopes

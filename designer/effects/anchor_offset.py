@@ -14,7 +14,7 @@ from designer.units import LENGTH
 
 def _change(machine: Machine, values: Values, *, cable: int) -> Machine:
     moved = np.array(machine.robot.exit_points_m)
-    moved[cable - 1] += [values["x_m"], values["y_m"], values["z_m"]]
+    moved[cable - 1] += [values.get(name, 0.0) for name in ("x_m", "y_m", "z_m")]
     return replace(machine, robot=replace(machine.robot, exit_points_m=frozen_array(moved)))
 
 

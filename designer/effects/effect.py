@@ -167,6 +167,8 @@ NEEDS: Mapping[str, str] = {
 
 ALL_ANCHORS, ALL_ATTACHMENTS = "anchors", "attachments"
 """What ``measurements.unknown`` calls the offsets of all exit points, or attachments, together."""
+OF_CABLE = " of cable "
+"""Between an effect's id and the cable, where it concerns only one."""
 
 MachineChange = Callable[..., Machine]
 """From a machine and `Values` to the machine with the effect."""
@@ -252,7 +254,7 @@ class Effect:
     @property
     def key(self) -> str:
         """Id, with the cable where it concerns only one."""
-        return self.id if self.cable is None else f"{self.id} of cable {self.cable}"
+        return self.id if self.cable is None else f"{self.id}{OF_CABLE}{self.cable}"
 
     def identified(self) -> dict[str, object]:
         """Return by what files name it."""
@@ -270,7 +272,9 @@ class Effect:
 
     def is_among(self, names: Sequence[str]) -> bool:
         """Tell whether one of the names, as in ``measurements.unknown``, is its own."""
-        return self.id in names or (self.also_called != "" and self.also_called in names)
+        called = {self.id, self.key, self.also_called} - {""}
+        ids = {name.partition(OF_CABLE)[0] for name in names} if self.cable is None else set()
+        return not called.isdisjoint(ids | set(names))
 
     def parameters_for(self, n_cables: int) -> tuple[Parameter, ...]:
         """Return the parameters on a robot with so many cables."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -37,7 +38,7 @@ from designer.measured.rows import (
 )
 from designer.measured.sense import sense_faults, unit_faults
 from designer.measured.table import LogTable
-from designer.model.measured_data import Measured
+from designer.model.measured_data import KINDS, Measured
 from designer.model.measurements import Measurements
 from designer.model.robot import Poses, Robot
 from designer.study import Study
@@ -87,6 +88,7 @@ def read_measured(study: Study) -> Measured:
     if not measurements.has_poses:
         measured = replace(measured, has_poses=False)
         _refuse_without_spare_readings(study.robot, measured, table)
+        _refuse(list(_missing_noise(study, measurements, measured)))
         return measured
     suspects = (*(effect.id for effect in study.effects), *measurements.unknown)
     effects = study.known_effects.effects
@@ -139,15 +141,26 @@ def _refuse_without_spare_readings(robot: Robot, measured: Measured, table: LogT
         problem = "poses of a platform with fewer cables than degrees of freedom cannot be told"
         raise InputError.at(table.name, problem, "measured poses")
     n_readings = int(measured.n_readings.max())
-    if n_readings <= robot.n_cables:
-        spare = robot.n_cables - robot.degrees_of_freedom
+    has_tensions = np.isfinite(measured.tension_N).any()
+    # Of lengths alone, internal forces are not asked for.
+    n_unknowns = robot.n_cables if has_tensions else robot.degrees_of_freedom
+    if n_readings <= n_unknowns:
+        spare = n_unknowns - robot.degrees_of_freedom
         unknown = f"{robot.degrees_of_freedom} of the pose"
         unknown += f" and {spare} of internal forces" if spare else ""
-        problem = (
-            f"rows have at most {n_readings} readings, for {robot.n_cables} unknowns: {unknown}"
-        )
-        expected = f"more than {robot.n_cables}, so lengths and tensions; or measured poses"
+        problem = f"rows have at most {n_readings} readings, for {n_unknowns} unknowns: {unknown}"
+        expected = f"more than {n_unknowns}, so lengths and tensions; or measured poses"
         raise InputError.at(table.name, problem, expected)
+
+
+def _missing_noise(study: Study, measurements: Measurements, measured: Measured) -> Iterator[Fault]:
+    """Yield what weighs a kind of reading against the other in the poses, and is not declared."""
+    for kind in KINDS:
+        has_any = np.isfinite(kind.of(measured)).any()
+        if has_any and kind.name not in measurements.declared_noise:
+            problem = f"is missing, and weighs {kind.name}s where poses are unknown"
+            expected = "a standard deviation of each kind of reading"
+            yield study.source.fault(f"measurements.noise.{kind.name}", problem, expected)
 
 
 def _measured(

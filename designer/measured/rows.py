@@ -179,7 +179,8 @@ def _with_pose(assigned: assign.Assigned) -> tuple[BoolArray, list[Fault]]:
     missing = np.array([np.isnan(column.values) for column in filled])
     has_pose = np.asarray(~missing.all(axis=0))
     places = np.argwhere(missing & has_pose)
-    problem, expected = "has half a pose, this is missing", "all of it, or nothing"
+    problem = "has half a pose, this is missing"
+    expected = "all of it, or nothing; or 'unknown: [poses]', which estimates whole poses"
     halves = (table.fault(int(row), filled[k].name, problem, expected) for k, row in places)
     return has_pose, faults + table.first_few(halves, len(places), "missing values")
 

@@ -150,11 +150,108 @@ def test_a_diagnosed_model_is_checked_without_poses(tmp_path) -> None:
     assert json.loads(helped.to_json())["rows"]["poses"] == "estimated"
 
 
-@pytest.mark.parametrize("robot", [YARD3, HALL8], ids=lambda robot: robot.name)
-def test_lengths_alone_have_nothing_to_spare(robot, tmp_path) -> None:
-    told = faults_of(written(make(robot, rows=12, seed=3308), tmp_path, ("length",)))
-    n = robot.cables
-    assert f"rows have at most {n} readings, for {n} unknowns" in told
+def test_lengths_alone_of_as_many_cables_as_degrees_of_freedom_are_refused(tmp_path) -> None:
+    told = faults_of(written(make(YARD3, rows=12, seed=3308), tmp_path, ("length",)))
+    assert "rows have at most 3 readings, for 3 unknowns: 3 of the pose" in told
+
+
+SCALES = (1.003, 0.9985)
+DRAWN_M = np.array([[0.0, 0.0, 2.4], [3.6, 0.0, 2.4], [3.6, 0.0, 0.0], [0.0, 0.0, 0.0]])
+
+
+def router(folder: Path, exit_m: np.ndarray, unknown: list[str], seed: int) -> Path:
+    """Write the log of a wall router with four belts, of lengths alone; return its config.
+
+    Its lower belts are held at 20 N; belts sag as parabolas do, and stretch. Where exit points are
+    not unknown, the zeros of the winches are declared.
+    """
+    rng = np.random.default_rng(seed)
+    position_m = np.stack([rng.uniform(0.4, 3.2, 60), np.zeros(60), rng.uniform(0.25, 2.0, 60)], -1)
+    span_m = exit_m - position_m[:, None]
+    chord_m = np.linalg.norm(span_m, axis=2)
+    along = np.moveaxis((span_m / chord_m[..., None])[..., [0, 2]], 1, 2)
+    tension_N = np.full((60, 4), 20.0)
+    load_N = 20.0 * along[..., 2:].sum(axis=2) - [0.0, 12.0 * 9.80665]
+    tension_N[:, :2] = np.linalg.solve(along[..., :2], -load_N[..., None])[..., 0]
+    across_N = 0.03 * 9.80665 * np.abs(span_m[..., 0])
+    arc_m = chord_m * (1.0 + across_N**2 / (24.0 * tension_N**2))
+    length_m = arc_m / (1.0 + tension_N / 1e5) * [*SCALES, 1.0, 1.0]
+    length_m += rng.normal(0.0, 1e-3, length_m.shape)
+    head = "length_1_m,length_2_m,length_3_m,length_4_m"
+    np.savetxt(folder / "log.csv", length_m, delimiter=",", header=head, comments="", fmt="%.6f")
+    config = {
+        "name": "router",
+        "robot": {
+            "planar": True,
+            "anchors": DRAWN_M.tolist(),
+            "platform": {"mass": "12 kg"},
+            "tension_min": "20 N",
+        },
+        "cable": {
+            "density": "1500 kg/m^3",
+            "youngs_modulus": "10 GPa",
+            "allowable_stress": "100 MPa",
+        },
+        "effects": {} if "anchors" in unknown else {"length_offset": {"offset_1_m": 0.0}},
+        "workspace": {"region": {"rectangle": [[0.4, 0], [3.2, 0]], "z": [0.3, 2.0]}},
+        "measurements": {
+            "file": "log.csv",
+            "unknown": ["poses", *unknown],
+            "noise": {"length": "1 mm"},
+            "cable": {"linear_mass": "0.03 kg/m", "axial_stiffness": "100 kN"},
+        },
+    }
+    path = folder / "router.yaml"
+    path.write_text(yaml.safe_dump(config), encoding="utf-8")
+    return path
+
+
+def scales_in(case: Case) -> tuple[list[float], list[float], float]:
+    """Return fitted scales of the upper belts, their deviations, and the loss over its count."""
+    noise = Noise(1e-3, 1.0, "declared")
+    problem = Problem(case.measured, case.predictor(), noise)
+    rows = np.ones(case.measured.n_rows, dtype=np.bool_)
+    model = fit(problem, case.given, rows, thorough=True)
+    names = [(s.effect.id, name) for s in model.settings for name in s.values]
+    places = [k for k, name in enumerate(names) if name == ("winch_scale", "scale")]
+    spare = model.n_data - len(model.vector)
+    return model.vector[places].tolist(), model.std[places].tolist(), model.loss / spare
+
+
+TOP = ["winch_scale of cable 1", "winch_scale of cable 2"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [3320, 3321, 3322])
+def test_lengths_alone_tell_the_scales_of_two_of_four_belts(seed, tmp_path) -> None:
+    case = case_in(router(tmp_path, DRAWN_M, TOP, seed))
+    assert [effect.key for effect in case.given] == TOP
+    scale, std, loss = scales_in(case)
+    assert np.abs(np.subtract(scale, SCALES)).max() < 3.0 * max(std)
+    assert max(std) < 1.5e-4
+    assert loss == pytest.approx(1.0, abs=0.4)
+
+
+@pytest.mark.slow
+def test_exit_points_are_told_in_a_frame_that_some_of_them_hold(tmp_path) -> None:
+    off_m = np.random.default_rng(3323).normal(0.0, 0.015, (4, 3)) * [1.0, 0.0, 1.0]
+    case = case_in(router(tmp_path, DRAWN_M + off_m, ["anchors", *TOP], 3323))
+    (note,) = (note for note in case.measured.notes if "frame" in note)
+    assert note.startswith("the frame is held by")
+    assert note.count("exit point") == 3
+    fitted = [p.name for e in case.given if e.id == "anchor_offset" for p in e.parameters]
+    assert len(fitted) == 5
+    assert "y_m" not in fitted
+    scale, std, loss = scales_in(case)
+    assert np.abs(np.subtract(scale, SCALES)).max() < 4.0 * max(std)
+    assert max(std) < 1e-3
+    assert loss == pytest.approx(1.0, abs=0.4)
+
+
+def test_scales_of_all_winches_let_the_frame_grow(tmp_path) -> None:
+    case = case_in(router(tmp_path, DRAWN_M, ["anchors", "winch_scale"], 3324))
+    (note,) = (note for note in case.measured.notes if "frame" in note)
+    assert note.count("exit point") == 4
 
 
 def test_a_swaying_platform_is_refused(tmp_path) -> None:
@@ -164,15 +261,19 @@ def test_a_swaying_platform_is_refused(tmp_path) -> None:
 
 def test_what_the_config_has_to_say(tmp_path) -> None:
     dataset = make(YARD3, rows=12, seed=3310)
-    noisy = {"noise": {"length": "1 mm"}, "unknown": ["poses", "anchors"]}
+    noisy = {"noise": {"length": "1 mm"}, "unknown": ["poses", "base_tilt"]}
     path = written(dataset, tmp_path, **noisy)
     config = yaml.safe_load(path.read_text(encoding="utf-8"))
     del config["workspace"]
     path.write_text(yaml.safe_dump(config), encoding="utf-8")
     told = faults_of(path)
-    assert "measurements.noise.tension: is missing" in told
     assert "workspace.region: is missing" in told
-    assert "'anchors' and 'poses' are both unknown" in told
+    assert "'base_tilt' and 'poses' are both unknown" in told
+
+
+def test_the_noise_of_both_kinds_of_readings_weighs_them(tmp_path) -> None:
+    told = faults_of(written(make(YARD3, rows=12, seed=3310), tmp_path, noise={"length": "1 mm"}))
+    assert "measurements.noise.tension: is missing" in told
 
 
 def test_given_poses_that_are_said_to_be_unknown_are_left_out(tmp_path) -> None:

@@ -14,7 +14,7 @@ from designer.documents.document import Data, Document
 from designer.documents.opened import open_input, reason
 from designer.documents.picture import LARGEST_PICTURE_BYTES, why_not_shown
 from designer.documents.section import reader_of
-from designer.effects.effect import ALL_ANCHORS, ALL_ATTACHMENTS, Effect
+from designer.effects.effect import ALL_ATTACHMENTS, OF_CABLE, Effect
 from designer.errors import Fault
 from designer.io.config.columns import ColumnSection
 from designer.io.config.robot_checks import AT_MOST, LARGEST, ROBOT_CHECKS, Parts, rank, valid
@@ -294,7 +294,11 @@ def unknowns_are_known(parts: Parts) -> Iterator[Fault]:
     """What is fitted from the start is an effect, or all exit points together; each once."""
     path, seen = _UNKNOWN, set()
     together = [effect.also_called for effect in parts.effects.values() if effect.also_called]
-    unknowns = (*parts.effects, *together, POSES)
+    anchors = parts.raw("robot.anchors")
+    cables = range(1, (len(anchors) if isinstance(anchors, list) else 0) + 1)
+    by_cable = [effect.id for effect in parts.effects.values() if effect.takes_cable]
+    of_cables = [f"{name}{OF_CABLE}{k}" for name in by_cable for k in cables]
+    unknowns = (*parts.effects, *together, POSES, *of_cables)
     for index, name in _texts(parts, path):
         if name not in unknowns:
             listed = f"{', '.join((*together, POSES))}, or an effect: {', '.join(parts.effects)}"
@@ -306,22 +310,17 @@ def unknowns_are_known(parts: Parts) -> Iterator[Fault]:
 
 
 def unknown_poses_can_be_told(parts: Parts) -> Iterator[Fault]:
-    """Where poses are unknown, exit points and the noise of both kinds of readings are not."""
+    """Where poses are unknown, attachments and the vertical are not."""
     unknown = {name: index for index, name in _texts(parts, _UNKNOWN)}
     if POSES not in unknown:
         return
-    lost = {ALL_ANCHORS, "anchor_offset", ALL_ATTACHMENTS, "attachment_offset", "base_tilt"}
+    lost = {ALL_ATTACHMENTS, "attachment_offset", "base_tilt"}
     for name in unknown.keys() & lost:
         problem = f"'{name}' and '{POSES}' are both unknown, and nothing tells one from the other"
         yield parts.fault(_UNKNOWN, problem, "one of them", unknown[name])
     if parts.raw("workspace.region") is None:
         expected = "where the platform may be, since its poses are unknown"
         yield parts.fault("workspace.region", "is missing", expected)
-    for kind in ("length", "tension"):
-        if parts.raw(f"measurements.noise.{kind}") is None:
-            problem = f"is missing, and weighs {kind}s where poses are unknown"
-            expected = "a standard deviation of each kind of reading"
-            yield parts.fault(f"measurements.noise.{kind}", problem, expected)
 
 
 def _texts(parts: Parts, path: str) -> Iterator[tuple[int, str]]:

@@ -274,8 +274,8 @@ class MeasurementsSection(Section):
     """Whether each row of the data is a pose at rest; else a sample of a slow motion."""
     unknown: Names = ()
     """Effects that are fitted from the start and not counted as a finding; `anchors` for all
-    exit points, `attachments` for all of those; `poses` where lengths and tensions have to tell
-    them."""
+    exit points, `attachments` for all of those; `poses` where the readings have to tell
+    them; `ID of cable K` for an effect of one cable."""
     plausible: PlausibleSection = PlausibleSection()
     """How far what is unknown may be from the drawing, before the diagnosis doubts it."""
     cable: MeasuredCableSection = config_field(expected="{linear_mass: …, axial_stiffness: …}")
