@@ -281,8 +281,8 @@ def _missing(assigned: Assigned, study: Study, *, has_poses: bool) -> Iterator[F
             "which has to be measured by other means than the winches"
         )
         expected = (
-            f"columns {', '.join(POSITION)}, or others mapped onto them in {_MAP}; or, with both "
-            f"lengths and tensions, 'unknown: [{POSES}]'"
+            f"columns {', '.join(POSITION)}, or others mapped onto them in {_MAP}; or, with "
+            f"lengths and tensions or with cables to spare, 'unknown: [{POSES}]'"
         )
         hint = did_you_mean(POSITION[0], assigned.covariates)
         yield assigned.table.fault(None, ", ".join(POSITION), problem, expected + hint)
