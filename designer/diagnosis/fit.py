@@ -137,12 +137,19 @@ def fit(
         return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(is_used))
     fresh = _to_start(effects, start, anew=anew)
     # Evaluations from anywhere, and from near the end.
-    turns = 80 if thorough or not start else 30 if anew and fresh else 12
+    turns = 80 if thorough or not start or (anew and fresh) else 12
     # Relative: the final model is told, a trial is only compared with others.
     tolerance = 1e-8 if thorough else 1e-5
-    starts = _starts(problem, effects, start, fresh)
-    if anew or not start:
-        starts = _promising(problem, effects, is_used, starts)
+    valleys = _starts(problem, effects, start, fresh)
+    is_known = {effect.key for effect in fresh} <= {s.effect.key for s in start}
+    near = [starting_vector(effects, start, {})] if is_known or not valleys else []
+    starts = [*valleys, *near]
+    if anew or not start:  # the present values promise most, but may be in the wrong valley
+        starts = [
+            vector
+            for group in (valleys, near)
+            for vector in _promising(problem, effects, is_used, group)
+        ]
     fits = [_fit_from(problem, effects, is_used, vector, turns, tolerance) for vector in starts]
     return min(fits, key=lambda candidate: candidate.loss)
 
@@ -161,7 +168,6 @@ def _starts(
     fresh: Sequence[Effect],
 ) -> list[FloatArray]:
     """Return vectors to start from: in each valley of each of the fresh effects."""
-    keys = {s.effect.key for s in start}
     starts = []
     fitted = {effect.key for effect in effects}
     for effect in fresh:
@@ -171,31 +177,29 @@ def _starts(
             rest = tuple(s for s in rest_settings if s.effect.key in fitted)
             values_to_try += effect.starts_from(problem.measured, problem.residual(rest))
         starts += [starting_vector(effects, rest_settings, values) for values in values_to_try]
-    if not starts or all(e.key in keys for e in fresh):
-        starts.append(starting_vector(effects, start, {}))
     return starts
 
 
 def _promising(
     problem: Problem, effects: Sequence[Effect], is_used: BoolArray, starts: Sequence[FloatArray]
 ) -> list[FloatArray]:
-    """Return the start or two from which a linear step leaves least, of equal ones the first.
+    """Return the start or two from which a linear step leaves least, of equal ones the nearer.
 
     Steps are taken while they do good: far off, where all readings of a winch stand off, the robust
     loss is so flat that the fit would not find its way.
     """
-    promises: dict[float, FloatArray] = {}
+    reached: dict[tuple[float, float], FloatArray] = {}
     for vector in starts:
-        promised, there = _stepped(problem, effects, is_used, vector)
-        promises.setdefault(round(np.log(promised + 1.0), 2), there)
-    least = min(promises)
-    return [promises[loss] for loss in sorted(promises)[:2] if loss < least + 0.1]
+        promise, loss, there = _stepped(problem, effects, is_used, vector)
+        reached.setdefault((round(np.log(promise + 1.0), 2), round(np.log(loss + 1.0), 2)), there)
+    least = min((promise for promise, _ in reached), default=0.0)
+    return [reached[key] for key in sorted(reached)[:2] if key[0] < least + 0.1]
 
 
 def _stepped(
     problem: Problem, effects: Sequence[Effect], is_used: BoolArray, vector: FloatArray
-) -> tuple[float, FloatArray]:
-    """Return the loss that a linear step promises, and where such steps lead; see `_promising`."""
+) -> tuple[float, float, FloatArray]:
+    """Return the loss that a linear step promises, and the loss and place where such steps lead."""
     low, high = np.array([p.bounds for effect in effects for p in effect.parameters]).T
     residual = problem.residual(settings_at(effects, vector))[is_used]
     loss, promise = float(huber(residual).sum()), np.inf
@@ -212,7 +216,7 @@ def _stepped(
         loss = loss_there
         if is_over:
             break
-    return promise, vector
+    return promise, loss, vector
 
 
 def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:
@@ -289,6 +293,7 @@ def in_reach(
         known = jacobian(problem, others, present.vector)[is_used]
     losses = []
     start = _starts(problem, effects, present.settings, [effect])
+    start = start or [starting_vector(effects, present.settings, {})]
     for vector in (starting_vector(effects, present.settings, effect.neutral), *start):
         settings = settings_at(effects, vector)
         (own,) = (places for s, places in with_places(settings) if s.effect.key == effect.key)

@@ -179,7 +179,9 @@ class Searcher:
         visited: list[set[Effect]] = []
         while set(effects) not in visited:
             visited.append(set(effects))
-            trials, passed_over = self.trials(effects, present, f"round {len(steps) + 1}")
+            # What earned its place before may hide behind what was named instead.
+            earned = [t.effect for step in steps for t in step.trials if t.earns_its_place]
+            trials, passed_over = self.trials(effects, present, f"round {len(steps) + 1}", earned)
             is_over = self.progress.is_over
             best = [] if is_over else _best(trials)
             # More that a machine lacks at once are not to be told apart by one log.
@@ -219,18 +221,19 @@ class Searcher:
         return fit(self.problem, effects, self.rows, settings, thorough=thorough, anew=anew)
 
     def trials(
-        self, effects: Sequence[Effect], present: Fit, part: str
+        self, effects: Sequence[Effect], present: Fit, part: str, earned: Sequence[Effect] = ()
     ) -> tuple[list[EffectTrial], dict[str, float]]:
         """Try the other candidates in addition, best first, and return those passed over.
 
         Fitted are those of which one linear step promises a good part of what it promises of the
-        best; where none of them earns its place, all whose promise may be no accident.
+        best, and those that ``earned`` a place before; where none of them earns it now, all whose
+        promise may be no accident.
         """
         promised = self._promised(effects, present, part)
         looks, least = len(promised), _REACH * max(promised.values(), default=0.0)
         clear = [e for e in promised if _chance(promised[e] / _REACH, e, looks) < SIGNIFICANCE]
         near = {e for e in clear if promised[e] >= least}
-        first = [e for k, e in enumerate(promised) if k < _FEWEST or e in near]
+        first = [e for k, e in enumerate(promised) if k < _FEWEST or e in near or e in earned]
         trials = self._tried(effects, first, present, part, looks)
         trials = self._validated(effects, present, trials, looks)
         rest = without([*promised], *(e.key for e in first))
@@ -329,7 +332,7 @@ class Searcher:
         added = [step for step in steps if step.added is not None and step.added.key == effect.key]
         gains = {t.effect.key: t.heldout_gain for step in added[-1:] for t in step.trials}
         good = {key for key, gain in gains.items() if gain >= 0.5 * gains[effect.key]}
-        lost = self.fit(rest, present)
+        lost = self.fit(rest, present, anew=True)
         gain = lost.loss - present.loss
         least = min(0.5 * gain, gain - 3.0 * RIVAL_MARGIN * scale)
         answer = []
