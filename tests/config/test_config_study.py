@@ -283,7 +283,8 @@ def test_the_options_in_the_starter_config_are_true(study_of: StudyOf) -> None:
     assert study.measurements is not None
     assert study.measurements.axial_stiffness_N == pytest.approx(96.2e6)
     assert len(study.measurements.columns) == 4
-    assert [effect.id for effect in study.effects] == ["pulley_radius", *["anchor_offset"] * 2]
+    kinds = ["pulley_radius", *["anchor_offset"] * 2, "pose_shift"]
+    assert [effect.id for effect in study.effects] == kinds
     with pytest.raises(InputError) as caught:
         study_of(text)
     (fault,) = caught.value.faults
