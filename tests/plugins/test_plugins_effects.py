@@ -257,7 +257,10 @@ FAULTS = [
         "drift(size=replace(SIZE, typical=0.0))",
         "drift_N_per_K has no typical size above 0",
     ),
-    ("replace(EFFECT, on_readings=None)", "acts on both machine and readings or on none"),
+    (
+        "replace(EFFECT, on_readings=None)",
+        "acts on several of machine, readings and poses or on none",
+    ),
     ("replace(EFFECT, needs={'sun'})", "it needs 'sun' (expected"),
     ("replace(EFFECT, law='')", "its law is no text"),
     ("replace(EFFECT, starts=({'x': 1.0},))", "starts from {'x': 1"),
