@@ -271,9 +271,9 @@ def in_reach(
 ) -> Reach:
     """Return what one linear step leaves of the robust loss, with one more effect in the model.
 
-    The step is from the present values of the others, and for the
-    effect from where it does nothing, as a score test has it (Rao, Proc. Cambridge Philos. Soc. 44,
-    1948), or from where a fit would start: the best of these.
+    The step is from the present values of the others, and for the effect from where it does
+    nothing, as a score test has it (Rao, Proc. Cambridge Philos. Soc. 44, 1948), or from where a
+    fit would start: the best of these.
 
     Parameters
     ----------
@@ -357,8 +357,8 @@ def _fit_from(
     limit = HUBER * np.sqrt(variance)
     residual[mask] = np.clip(answer.fun, -limit, limit)
     settings = settings_at(effects, answer.x)
-    doubts = _doubts(settings, slopes, residual, variance)
-    return Fit(settings, answer.x, doubts[0], loss, count, *doubts[1:])
+    std, inflation, wald, covariance = _doubts(settings, slopes, residual, variance)
+    return Fit(settings, answer.x, std, loss, count, inflation, wald, covariance)
 
 
 def _doubts(

@@ -74,7 +74,7 @@ class Expected:
         return self.std < 0.5 * (high - low)
 
 
-class Curve(NamedTuple):
+class DeviationCurve(NamedTuple):
     """The largest deviation of an effect's parameters, in one unit, by number of poses."""
 
     effect_id: str
@@ -102,7 +102,7 @@ class Plan:
         As in `designer.diagnosis.calibration`.
     sizes : tuple of int
         Numbers of poses of the curves.
-    curves : tuple of Curve
+    curves : tuple of DeviationCurve
         Deviations over the number of poses.
     """
 
@@ -115,7 +115,7 @@ class Plan:
     condition: float
     observability: float
     sizes: tuple[int, ...]
-    curves: tuple[Curve, ...]
+    curves: tuple[DeviationCurve, ...]
 
     @property
     def untold(self) -> tuple[Expected, ...]:
@@ -357,9 +357,9 @@ def _route(position_m: FloatArray) -> IntArray:
 
 def _curves(
     parameters: Sequence[tuple[Effect, Parameter]], by_size: Sequence[Told], typical: FloatArray
-) -> Iterator[Curve]:
+) -> Iterator[DeviationCurve]:
     std = np.array([told.std for told in by_size]) * typical
     kinds = [(effect.id, p.unit) for effect, p in parameters]
     for kind in dict.fromkeys(kinds):
         alike = [k for k, other in enumerate(kinds) if other == kind]
-        yield Curve(*kind, std[:, alike].max(axis=1))
+        yield DeviationCurve(*kind, std[:, alike].max(axis=1))

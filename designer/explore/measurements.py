@@ -83,7 +83,7 @@ def residuals(question: Question) -> Residuals:
     n_cables = measured.length_m.shape[1]
     return Residuals(
         row_numbers=measured.row_numbers,
-        position_m=measured.poses.position_m,
+        position_m=predict.placed(()).poses.position_m,
         channels=tuple(channel_names(n_cables)),
         units=("m",) * n_cables + ("N",) * n_cables,
         residual=problem.measured.readings - problem.predicted(()).stacked,

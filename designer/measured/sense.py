@@ -12,7 +12,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.errors import Fault
 from designer.measured.assign import POSITION, TEMPERATURE_NAME, length_names, tension_names
-from designer.measured.mirrored import left_handed
+from designer.measured.left_handed import left_handed
 from designer.measured.table import LogTable
 from designer.model.measured_data import Measured
 from designer.model.robot import Robot

@@ -80,6 +80,14 @@ def test_declared_effects_are_in_the_model(measured: Session) -> None:
     assert measured.edit("effects.length_offset.offset_1_m", "0") == ()
 
 
+def test_rows_stand_in_the_frame_of_the_robot(measured: Session) -> None:
+    logged_m = residuals(question_of(measured)).position_m
+    measured.set_text(f"{measured.text}effects: {{pose_shift: {{z_m: 0.25}}}}\n")
+    assert measured.faults == ()
+    shift_m = logged_m - residuals(question_of(measured)).position_m
+    assert np.allclose(shift_m, [0.0, 0.0, 0.25])
+
+
 def test_without_data_there_is_nothing_to_compare(yard: Session) -> None:
     with pytest.raises(InputError, match="measurements: is missing"):
         residuals(question_of(yard))
