@@ -147,6 +147,8 @@ def _without_meaning(section: StudySection) -> frozenset[str]:
     hidden = {*(_OF_A_BODY if is_point else ())}
     if len(robot.anchors) <= freedom:
         hidden.add("robot.tension_min")
+    if section.workspace is None:
+        hidden |= {f"robot.winches.{name}" for name in type(section.robot.winches).model_fields}
     if section.selection is None or not section.selection.groups:
         hidden.add("selection.max_distinct_products")
     return frozenset(hidden)

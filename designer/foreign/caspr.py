@@ -128,6 +128,7 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
             limits = tuple(
                 (low + d, high + d) for (low, high), d in zip(limits, point, strict=True)
             )
+    least_N, largest_N = _tension_limits(cable_set, remarks)
     return ForeignRobot(
         file=bodies.file,
         name=link.attributes.get("name", "").strip()
@@ -142,7 +143,8 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
         position_m=position,
         euler_xyz_rad=euler,
         limits_m=limits,
-        tension_min_N=_least_tension(cable_set, remarks),
+        tension_min_N=least_N,
+        tension_max_N=largest_N,
         pulley_radius_m=_pulley_radius(cable_set, remarks),
         remarks=remarks,
     )
@@ -246,20 +248,17 @@ def _pulley_radius(cable_set: Element, remarks: Remarks) -> float | None:
     return None
 
 
-def _least_tension(cable_set: Element, remarks: Remarks) -> float:
-    """Return the least tension, the largest of those that the file has."""
+def _tension_limits(cable_set: Element, remarks: Remarks) -> tuple[float, float | None]:
+    """Return the limits that hold for all cables, where those of the file differ the narrowest."""
     limits: dict[str, set[float]] = {"force_min": set(), "force_max": set()}
     for cable in _cables(cable_set):
         for name, values in limits.items():
             element = cable.find("properties", name)
             if element is not None:
                 values.update(element.numbers(1))
-    least, largest = limits["force_min"], limits["force_max"]
+    least, largest = limits["force_min"], {force for force in limits["force_max"] if force > 0.0}
     if len(least) > 1:
         remarks["robot.tension_min"] = ("The file's cables differ; this is the largest.",)
-    if largest:
-        forces = " and ".join(f"{force:g}" for force in sorted(largest))
-        remarks["cable"] = (
-            f"The file lets cables pull with {forces} N at most, which no field of a study takes.",
-        )
-    return max((0.0, *least))
+    if len(largest) > 1:
+        remarks["robot.winches"] = ("The file's cables differ; this is the smallest.",)
+    return max((0.0, *least)), min(largest, default=None)

@@ -129,10 +129,22 @@ def _robot(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:
             yield f"  tension_min: {least}"
         else:
             yield f"  # The file asks for {least} at least, which so few cables cannot choose."
+    yield from _winches(robot, has_workspace=_box_m(robot, answers) is not None)
     if answers.gravity is not None:
         yield f"  gravity: {_list(answers.gravity)}"
     if robot.plane_normal is not None:
         yield "  planar: true"
+
+
+def _winches(robot: ForeignRobot, *, has_workspace: bool) -> Iterator[str]:
+    """Yield the largest tension, commented out where the study has no poses to hold it in."""
+    if robot.tension_max_N is None:
+        return
+    yield from _remarks(robot, "robot.winches", "  ")
+    mark = "" if has_workspace else "# "
+    yield f"  {mark}winches: {{tension_max: {format_SI(robot.tension_max_N, FORCE)}}}"
+    if not has_workspace:
+        yield "  #   is held against all poses of a workspace."
 
 
 def _mass(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:
@@ -193,12 +205,17 @@ def _pose(robot: ForeignRobot) -> Iterator[str]:
         yield f"pose: {_list(position)}"
 
 
+def _box_m(robot: ForeignRobot, answers: ImportAnswers) -> tuple[tuple[float, float], ...] | None:
+    """Return the limits of the joint, which another gravity makes those of another frame."""
+    return robot.limits_m if answers.gravity is None else None
+
+
 def _workspace(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:
     """Yield the box of the joint's limits, or its upright rectangle in a plane."""
-    limits = robot.limits_m
-    if limits is None or answers.gravity is not None:
+    limits = _box_m(robot, answers)
+    if limits is None:
         remarks = list(_remarks(robot, "workspace"))
-        unknown = "" if remarks or limits is not None else "; the file does not tell"
+        unknown = "" if remarks or robot.limits_m is not None else "; the file does not tell"
         yield f"# All poses that the cables have to serve{unknown}."
         yield from remarks
         yield "# workspace:"

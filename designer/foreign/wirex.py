@@ -19,10 +19,8 @@ _MASS = 25.0
 _CENTRE = (0.0, 1.0, 0.2)
 _RADIUS = 0.1
 _ROPE = {"elasticity": 110e9, "radius": 0.006, "breaking_load": 40e3, "weight": 0.023}
-_WINCH = {
-    ("cable", "f_max"): (720.0, "largest force {:g} N"),
-    ("drum", "r_drum"): (0.1, "drum radius {:g} m"),
-}
+_WINCH = {("cable", "f_max"): 720.0, ("drum", "r_drum"): 0.1}
+"""What WireX writes of a winch where nobody entered anything."""
 _FREE, _PLANAR, _POINT, _PLANAR_POINT = "3R3T", "1R2T", "3T", "2T"
 
 
@@ -50,7 +48,13 @@ def read_wirex(path: Path, root: Element) -> ForeignRobot:
     if pattern in (_POINT, _PLANAR_POINT):
         held_at_one_point(robot, attachments)
     platform, remarks = robot.find("platform"), Remarks()
-    _winch(root.find("winch"), remarks)
+    winch = root.find("winch")
+    drum_radius_m = _of_winch(winch, "drum", "r_drum")
+    if drum_radius_m is not None:
+        remarks["robot"] = (
+            f"Of the winches the file has: drum radius {drum_radius_m:g} m. No field of a study "
+            "takes it.",
+        )
     return ForeignRobot(
         file=str(path),
         name=robot.attributes.get("name", "").strip() or path.stem,
@@ -60,6 +64,7 @@ def read_wirex(path: Path, root: Element) -> ForeignRobot:
         mass_kg=_mass(platform, remarks),
         centre_of_mass_m=_centre(platform, remarks),
         plane_normal=(0.0, 0.0, 1.0) if pattern in (_PLANAR, _PLANAR_POINT) else None,
+        tension_max_N=_of_winch(winch, "cable", "f_max"),
         pulley_radius_m=_pulley_radius(bases, remarks),
         rope=_rope(root.find("cable"), remarks),
         remarks=remarks,
@@ -126,18 +131,13 @@ def _rope(cable: Element | None, remarks: Remarks) -> ForeignRope | None:
     )
 
 
-def _winch(winch: Element | None, remarks: Remarks) -> None:
-    """Tell what the file has of the winches, as far as somebody entered it."""
-    figures = []
-    for (tag, name), (default, remark) in _WINCH.items():
-        element = None if winch is None else winch.find(tag)
-        if element is not None and name in element.attributes:
-            value = element.number(name)
-            figures += [] if value in (0.0, default) else [remark.format(value)]
-    if figures:
-        remarks["robot"] = (
-            f"Of the winches the file has: {', '.join(figures)}. No field of a study takes it.",
-        )
+def _of_winch(winch: Element | None, tag: str, name: str) -> float | None:
+    """Return what the file has of the winches; None where nobody entered it."""
+    element = None if winch is None else winch.find(tag)
+    if element is None or name not in element.attributes:
+        return None
+    value = element.number(name)
+    return None if value in (0.0, _WINCH[tag, name]) else value
 
 
 def _pulley_radius(bases: list[Element], remarks: Remarks) -> float | None:

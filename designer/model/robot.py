@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from designer import checked
 from designer.arrays import BoolArray, FloatArray, IntArray, frozen_array
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
+from designer.model.winches import Winches
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,6 +82,8 @@ class Robot:
     cable_load_direction : array (3,) or None
         Where the load on the cables points, world frame, such as that of weight and wind; its
         length does not count. None for gravity alone. The upright frame is then built from it.
+    winches : Winches
+        What pulls the cables.
     """
 
     exit_points_m: checked.Points
@@ -97,6 +100,7 @@ class Robot:
     )
     is_planar: bool = False
     cable_load_direction: checked.Vector | None = None
+    winches: Winches = field(default_factory=Winches)
 
     def __post_init__(self) -> None:
         checked.check_fields(self)

@@ -12,6 +12,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
 from designer.model.robot import Robot
+from designer.model.winches import Winches
 from designer.model.workspace import Workspace
 from designer.statics.inverse import Statics
 from designer.statics.shape import sag_ratio, string_frequency_Hz
@@ -94,6 +95,7 @@ def criteria_of(robot: Robot, workspace: Workspace, selection: Selection | None)
     of_cables = _of_cables(robot.tension_min_N, sag_max)
     return [
         *of_cables,
+        *_of_winches(robot.winches),
         *_of_workspace(workspace),
         *(() if selection is None else _of_limits(selection)),
     ]
@@ -131,6 +133,22 @@ def _of_cables(least_N: float, sag_max: float | None) -> Iterator[Criterion]:
             quantity=lambda _, statics: sag_ratio(statics),
             limits=(sag_max,),
             kind="at_most",
+        )
+
+
+def _of_winches(winches: Winches) -> Iterator[Criterion]:
+    """Yield what is asked of the winches in every equilibrium."""
+    if winches.tension_max_N is not None:
+        yield Criterion(
+            id="winch_tension",
+            title="Winch",
+            formula="largest tension of a cable at its exit point ≤ that of a winch",
+            source=f"robot.winches.tension_max; {WHERE}",
+            unit="N",
+            quantity=lambda _, statics: statics.exit_tension_N,
+            limits=(winches.tension_max_N,),
+            kind="at_most",
+            at_rest_after_loss=True,  # brakes have to hold it as well
         )
 
 

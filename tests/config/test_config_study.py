@@ -155,6 +155,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("robot.gravity", "default", "[0, 0, -1]"),
         Entry("robot.planar", "default", "false"),
         Entry("robot.tension_min", "default", "0 N"),
+        Entry("robot.winches.tension_max", "default", "none"),
         Entry("cable.density", "5290 kg/m^3", "5290 kg/m^3"),
         Entry("cable.youngs_modulus", "62.7 GPa", "6.27e10 Pa"),
         Entry("cable.allowable_stress", "198 MPa", "1.98e8 Pa"),

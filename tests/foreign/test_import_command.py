@@ -46,6 +46,7 @@ def test_a_whole_study(run, tmp_path) -> None:
     require_enough_cables(study)
     assert study.robot.platform.mass_kg == 50.0
     assert study.robot.tension_min_N == 5.0
+    assert study.robot.winches.tension_max_N == 900.0
     assert np.allclose(study.robot.exit_points_m, EXITS)
     assert np.allclose(study.robot.attachments_m, HELD)
     assert np.allclose(study.pose.position_m, [0.5, 0, 2])
@@ -114,6 +115,18 @@ def test_so_few_cables_choose_no_tension(tmp_path) -> None:
     robot = read_foreign(write_caspr(tmp_path, bodies(), text))
     assert "tension_min:" not in study_text(robot, ImportAnswers())
     assert "asks for 5 N at least" in study_text(robot, ImportAnswers())
+
+
+def test_largest_tension_waits_for_a_workspace(run, tmp_path) -> None:
+    differing = cables().replace("<force_max>900<", "<force_max>700<", 1)
+    path = write_caspr(tmp_path, bodies(), differing)
+    robot = read_foreign(path)
+    assert (robot.tension_max_N, robot.limits_m) == (700.0, None)
+    text = study_text(robot, ImportAnswers())
+    assert "  # winches: {tension_max: 700 N}" in text
+    assert "The file's cables differ; this is the smallest." in text
+    assert run("import", str(path), *GRADE)[0] == 0
+    assert read_study(tmp_path / "rig.yaml").robot.winches.tension_max_N is None
 
 
 def test_a_name_that_yaml_takes_for_something_else(run, tmp_path) -> None:

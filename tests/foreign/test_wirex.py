@@ -60,7 +60,8 @@ def test_one_pulley_that_hangs_otherwise_is_enough_to_be_told(tmp_path, a33: str
 def test_winch_data_are_told(tmp_path) -> None:
     winch = '<winch><cable f_max="900"/><drum r_drum="0.25"/></winch></models>'
     robot = read(tmp_path, wirex().replace("</models>", winch))
-    assert "largest force 900 N, drum radius 0.25 m" in robot.remarks["robot"][0]
+    assert robot.tension_max_N == 900.0
+    assert "drum radius 0.25 m" in robot.remarks["robot"][0]
 
 
 def test_a_point_mass(tmp_path) -> None:

@@ -244,7 +244,7 @@ def _requirement(text, ropes, analysis: Analysis, one: Requirement) -> Iterator[
 
 def _severity(one: Requirement, text) -> float:
     """Return the quantity of a requirement so that less of it is worse."""
-    if one.id == "sag":
+    if one.id in ("sag", "winch_tension"):
         return -one.demand
     if one.id == "excitation":
         return -one.utilisation
@@ -262,6 +262,7 @@ QUANTITIES = {
     "stability": lambda state, _: least_stiffness_N_per_m(state),
     "stiffness": lambda state, _: least_stiffness_N_per_m(state),
     "sag": lambda state, _: -sag_ratio(state),
+    "winch_tension": lambda state, _: -float(np.linalg.norm(state.exit_pull_N, axis=1).max()),
     "floor": lambda state, _: lowest_m(state),
     "clearance": lambda state, _: clearance_m(state),
     "excitation": _excitation,

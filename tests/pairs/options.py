@@ -349,6 +349,7 @@ OPTIONS: tuple[Option, ...] = (
         "excitation", "band of excitation", ALL, _set("selection.limits.excitation", [0.2, 0.9])
     ),
     Option("drum", "capacity of the drums", ALL, _set("selection.limits.drum_capacity", 12.0)),
+    Option("winch_tension", "largest tension", ALL, _set("robot.winches", {"tension_max": 900.0})),
     Option("sheave", "sheave", ALL, _set("selection.sheave_diameter", 0.2)),
     Option("fitting", "end fittings", ALL, _set("selection.termination_efficiency", 0.9)),
     Option("groups", "groups of cables", ALL, _groups),

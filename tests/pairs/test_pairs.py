@@ -38,6 +38,7 @@ QUICK = (
     ("exclude", "drum"),
     ("floor", "excitation"),
     ("sheave", "fitting"),
+    ("pulleys", "winch_tension"),
 )
 """Pairs on the robot of three cables, which is quick, of as many options as there are."""
 

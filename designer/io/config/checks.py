@@ -159,11 +159,13 @@ _NO_WORKSPACE = "a workspace that the rope is to serve, or no selection"
 _NO_LIMIT = "has no meaning without selection.groups"
 _NO_CASES = "a workspace: a load case is for all its poses"
 _NO_ROPE = "a selection: it is the chosen rope that may not be enough"
+_NO_WINCHES = "a workspace: winches are held against what they meet in all its poses"
 _NEEDS = (
     ("selection", "workspace", "has no meaning without a workspace", _NO_WORKSPACE),
     ("selection.max_distinct_products", _GROUPS, _NO_LIMIT, "groups, or neither"),
     (_CASES, "workspace", "there is no workspace", _NO_CASES),
     (_UNCERTAINTY, "selection", "there is no selection", _NO_ROPE),
+    ("robot.winches", "workspace", "there is no workspace", _NO_WINCHES),
 )
 """Fields that another one has to be beside: what is wrong without it, and what is expected."""
 _EXCLUDES = (

@@ -16,6 +16,7 @@ from designer.io.config.regions import AnyRegion, Box, only_one_of
 from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import Region
 from designer.model.robot import Platform, Robot
+from designer.model.winches import Winches
 
 _points = list_of(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
 
@@ -78,6 +79,17 @@ class PlatformSection(Section):
         )
 
 
+class WinchesSection(Section):
+    """The winches, one for each cable and all alike."""
+
+    tension_max: fields.BreakingLoad | None = config_field("Largest tension of a winch")
+    """Largest tension of a cable at its exit point, in every load case."""
+
+    def winches(self) -> Winches:
+        """Return the winches."""
+        return Winches(self.tension_max)
+
+
 class RobotSection(Section):
     """The machine."""
 
@@ -92,6 +104,8 @@ class RobotSection(Section):
     tension_min: fields.Tension = config_field("Least tension", 0.0)
     """Least tension anywhere in any cable, where there are more cables than degrees of
     freedom."""
+    winches: WinchesSection = WinchesSection()
+    """What pulls the cables: all winches are alike."""
 
     def robot(self) -> Robot:
         """Return the robot."""
@@ -101,6 +115,7 @@ class RobotSection(Section):
             tension_min_N=self.tension_min,
             gravity_direction=frozen_array(self.gravity),
             is_planar=self.planar,
+            winches=self.winches.winches(),
         )
 
 

@@ -1,0 +1,66 @@
+"""What is asked of winches, against cables integrated in world axes by the reference of the pairs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from pairs.agreement import Situation, ropes_of
+from pairs.options import BASES
+from pairs.reference import Pose, solve
+from pairs.table import analysed
+
+from designer.analysis.analyse import Analysis
+from designer.explore.session import Session
+from designer.model.requirement import Answer
+from designer.plugins.find import find_plugins
+from designer.resources import example_file
+
+Study = dict[str, Any]
+
+
+def crane(**robot: Any) -> Study:
+    """Return the small crane of the pairs over a box, with more of its robot."""
+    base = BASES["crane"]
+    workspace = {"region": {"box": [[5.0, 7.0], [3.0, 5.0], [2.0, 5.0]]}, "samples": 60, "proof": 0}
+    return base | {"robot": base["robot"] | robot, "workspace": workspace}
+
+
+def states(study: Study, analysis: Analysis, case: dict[str, Any] | None = None, count: int = 60):
+    """Yield the reference's state at random places of the box."""
+    rng = np.random.default_rng(20261125)
+    low, high = np.array(study["workspace"]["region"]["box"]).T
+    situation = Situation(study, ropes_of(analysis), case or {})
+    for share in rng.uniform(size=(count, 3)):
+        yield solve(situation.problem, Pose(low + share * (high - low)))
+
+
+def test_largest_tension_at_exit_points(tmp_path: Path) -> None:
+    study = crane(winches={"tension_max": 2500.0})
+    analysis = analysed(study, tmp_path)
+    (winch,) = (each for each in analysis.requirements if each.id == "winch_tension")
+    exit_N = [np.linalg.norm(state.exit_pull_N, axis=1).max() for state in states(study, analysis)]
+    assert winch.place is not None and winch.cable is not None
+    there = solve(Situation(study, ropes_of(analysis), {}).problem, Pose(winch.place))
+    pull_N = np.linalg.norm(there.exit_pull_N, axis=1)
+    assert winch.demand == pytest.approx(pull_N.max(), rel=1e-6)
+    assert winch.cable == pull_N.argmax() + 1
+    assert max(exit_N) <= winch.demand
+    assert winch.utilisation == pytest.approx(winch.demand / 2500.0)
+
+
+@pytest.mark.parametrize("share", [0.99, 1.01])
+def test_winch_decides_the_answer(tmp_path: Path, share: float) -> None:
+    asked = analysed(crane(winches={"tension_max": 1e6}), tmp_path)
+    (winch,) = (each for each in asked.requirements if each.id == "winch_tension")
+    again = analysed(crane(winches={"tension_max": share * winch.demand}), tmp_path)
+    assert again.answer is (Answer.YES if share > 1.0 else Answer.NO)
+
+
+def test_window_offers_winches() -> None:
+    session = Session.open(example_file("yard"), find_plugins(with_plugins=False))
+    assert "robot.winches.tension_max" in [field.path for field in session.fields()]
+    session.edit("robot.winches.tension_max", "5 kN")
+    assert session.question().study.robot.winches.tension_max_N == 5000.0

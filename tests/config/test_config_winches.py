@@ -1,0 +1,43 @@
+"""The winches of a robot in the config."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from designer.errors import Fault
+from designer.study import Study
+
+STUDY = """\
+robot: {anchors: [[0, 0, 9], [9, 0, 9], [4, 9, 9]], platform: {mass: 100}, winches: {%s}}
+cable: {density: 7800, youngs_modulus: 200 GPa, allowable_stress: 180 MPa}
+"""
+WORKSPACE = "workspace: {region: {box: [[3, 4], [3, 4], [1, 2]]}}\n"
+
+
+def test_winches_with_units(study_of: Callable[[str], Study]) -> None:
+    winches = study_of(STUDY % "tension_max: 5 kN" + WORKSPACE).robot.winches
+    assert winches.tension_max_N == pytest.approx(5000.0)
+
+
+def test_winches_need_a_workspace(faults_of: Callable[[str], list[Fault]]) -> None:
+    (fault,) = faults_of(STUDY % "tension_max: 5 kN" + "pose: [4, 4, 2]\n")
+    assert (fault.line, fault.field) == (1, "robot.winches")
+    assert "no workspace" in fault.problem
+
+
+@pytest.mark.parametrize(
+    ("given", "field", "problem"),
+    [
+        ("tension_max: 0", "tension_max", "0 is out of range"),
+        ("tension_max: 3 m", "tension_max", "has the unit meter"),
+        ("tension_max: [1 kN, 2 kN]", "tension_max", "a list is not a number"),
+    ],
+)
+def test_mistakes(
+    faults_of: Callable[[str], list[Fault]], given: str, field: str, problem: str
+) -> None:
+    (fault,) = faults_of(STUDY % given + WORKSPACE)
+    assert fault.field == f"robot.winches.{field}"
+    assert problem in fault.problem
