@@ -1,4 +1,4 @@
-"""What is asked of winches, against cables integrated in world axes by the reference of the pairs."""
+"""What is asked of winches, against the reference of the pairs, which has world axes alone."""
 
 from __future__ import annotations
 
