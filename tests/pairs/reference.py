@@ -15,6 +15,7 @@ is made smallest, by SLSQP.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.optimize import linprog, minimize, nnls, root
@@ -58,13 +59,13 @@ class Problem:
     def n(self) -> int:
         return len(self.exits_m)
 
-    @property
+    @cached_property
     def scale_N(self) -> float:
         """Size of the load."""
         total = np.linalg.norm(self.force_N) + np.linalg.norm(self.centre_force_N)
         return float(total + np.linalg.norm(self.moment_Nm) / self.reach_m)
 
-    @property
+    @cached_property
     def reach_m(self) -> float:
         reach = float(np.linalg.norm(self.arms_m, axis=1).max())
         return reach if reach > 0.0 else 1.0
@@ -89,7 +90,7 @@ class Pose:
         place = np.asarray(place, dtype=float)
         return cls(place[:3], place[3:] if len(place) == 6 else np.zeros(3))
 
-    @property
+    @cached_property
     def rotation(self) -> np.ndarray:
         return Rotation.from_rotvec(self.turn_rad).as_matrix()
 
@@ -214,14 +215,15 @@ def reach_of(
 
 def support_of(
     problem: Problem, attachment: np.ndarray, end: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return where cables leave the base (n, 3), its slope in their tension there, and the wrap.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return where cables leave the base (n, 3), and the wrap (n,), each with its slope in tension.
 
     An upright pulley swivels toward the attachment; the cable leaves it as a tangent, at an angle
     told by the part of its tension that lies in the pulley's plane.
     """
     if problem.radius_m == 0.0:
-        return problem.exits_m, np.zeros((problem.n, 3, 3)), np.zeros(problem.n)
+        n = problem.n
+        return problem.exits_m, np.zeros((n, 3, 3)), np.zeros(n), np.zeros((n, 3))
     up, radius = problem.up, problem.radius_m
     toward = attachment - problem.exits_m
     toward = toward - (toward @ up)[:, None] * up
@@ -233,8 +235,11 @@ def support_of(
     slope_by = (out[:, None] * up + rise[:, None] * toward) / (rise**2 + out**2)[:, None]
     by_end = radius * np.einsum("ia,ib->iab", cosine * toward - sine * up, slope_by)
     wrap = radius * (0.5 * np.pi + slope)
-    strain = np.linalg.norm(end, axis=1) / problem.stiffness_N
-    return point, by_end, wrap / (1.0 + strain)
+    tension = np.linalg.norm(end, axis=1)
+    stretch = 1.0 + tension / problem.stiffness_N
+    by_stretch = wrap / (stretch * tension * problem.stiffness_N)
+    wrap_by = (radius * slope_by - by_stretch[:, None] * end) / stretch[:, None]
+    return point, by_end, wrap / stretch, wrap_by
 
 
 def load_on(problem: Problem, rotation: np.ndarray) -> np.ndarray:
@@ -292,7 +297,7 @@ class Equations:
         pull, length = self.split(x)
         reach, by_pull, by_length = reach_of(problem, pull, length)
         end = pull - length[:, None] * problem.load_N_per_m
-        support, by_end, _ = support_of(problem, self.attachment, end)
+        support, by_end, *_ = support_of(problem, self.attachment, end)
         gap = (self.attachment + reach - support) / self.chord[:, None]
         held = np.einsum("dnk,nk->d", self.balance, pull) + self.load
         slope = np.zeros((3 * n + len(held), 4 * n))
@@ -304,10 +309,21 @@ class Equations:
         slope[3 * n :, : 3 * n] = self.balance.reshape(len(held), -1)
         return np.concatenate([gap.ravel(), held / problem.scale_N]), slope
 
+    def lengths_left(self, x: np.ndarray, total_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return by how much total lengths are others (n,), over the chord, and slopes (n, 4 n)."""
+        pull, length = self.split(x)
+        load, cables = self.problem.load_N_per_m, np.arange(self.problem.n)
+        *_, wrap, by_end = support_of(self.problem, self.attachment, pull - length[:, None] * load)
+        slope = np.zeros((len(cables), 4 * len(cables)))
+        for axis in range(3):
+            slope[cables, 3 * cables + axis] = by_end[:, axis] * self.problem.scale_N / self.chord
+        slope[cables, 3 * len(cables) + cables] = 1.0 - (by_end * load).sum(axis=1)
+        return (length + wrap - total_m) / self.chord, slope
+
     def state(self, x: np.ndarray) -> State:
         pull, length = self.split(x)
         end = pull - length[:, None] * self.problem.load_N_per_m
-        support, _, wrap = support_of(self.problem, self.attachment, end)
+        support, _, wrap, _ = support_of(self.problem, self.attachment, end)
         return State(self.problem, self.pose, pull, length, length + wrap, support)
 
     def start(self, tension: np.ndarray) -> np.ndarray:
@@ -542,13 +558,14 @@ def hang(
     n = problem.n
 
     def left(x):
-        one = equations.state(x)
-        gap = equations.residual(x)[0][: 3 * n]
-        return np.concatenate([gap, (one.total_m - total_m) / equations.chord])
+        (gap, gap_by), (lengths, lengths_by) = (
+            equations.residual(x), equations.lengths_left(x, total_m)
+        )  # fmt: skip
+        return np.append(gap[: 3 * n], lengths), np.vstack([gap_by[: 3 * n], lengths_by])
 
     with np.errstate(all="ignore"):
-        found = root(left, x, method="hybr", options={"xtol": 1e-14})
-    is_closed = np.abs(left(found.x)).max() < CLOSED
+        found = root(left, x, jac=True, method="hybr", options={"xtol": 1e-14})
+    is_closed = np.abs(left(found.x)[0]).max() < CLOSED
     return equations.state(found.x) if is_closed else None
 
 
@@ -573,21 +590,29 @@ def settle(
         )
         return Pose(start.position_m + size * twist[:3], turn.as_rotvec())
 
-    def left(x):
+    def at(x: np.ndarray) -> tuple[Equations, np.ndarray, np.ndarray]:
         equations = Equations.of(problem, pose_at(x[4 * n :]))
-        x = x[: 4 * n] * np.append(np.ones(3 * n), first.chord / equations.chord)
-        lengths = (equations.state(x).total_m - total_m) / equations.chord
-        return np.concatenate([equations.residual(x)[0], lengths])
+        scale = np.append(np.ones(3 * n), first.chord / equations.chord)
+        return equations, x[: 4 * n] * scale, scale
+
+    def left(x: np.ndarray) -> np.ndarray:
+        equations, x, _ = at(x)
+        return np.append(equations.residual(x)[0], equations.lengths_left(x, total_m)[0])
+
+    def slopes(x: np.ndarray) -> np.ndarray:
+        """Slopes in the pose are differences."""
+        equations, cables, scale = at(x)
+        parts = equations.residual(cables)[1], equations.lengths_left(cables, total_m)[1]
+        steps, here = 1e-7 * np.eye(4 * n + dof)[4 * n :], left(x)
+        by_pose = [(left(x + step) - here) / 1e-7 for step in steps]
+        return np.column_stack([np.vstack(parts) * scale, *by_pose])
 
     x = np.append(first.join(near.pull_N, near.free_m), np.zeros(dof))
     with np.errstate(all="ignore"):
-        found = root(left, x, method="hybr", options={"xtol": 1e-14})
+        found = root(left, x, jac=slopes, method="hybr", options={"xtol": 1e-14})
         is_closed = np.abs(left(found.x)).max() < CLOSED
-    if not is_closed:
-        return None
-    equations = Equations.of(problem, pose_at(found.x[4 * n :]))
-    scaled = found.x[: 4 * n] * np.append(np.ones(3 * n), first.chord / equations.chord)
-    return equations.state(scaled)
+    equations, cables, _ = at(found.x)
+    return equations.state(cables) if is_closed else None
 
 
 def compliance(state: State, step: float = 1e-6) -> np.ndarray | None:
