@@ -15,11 +15,13 @@ from designer.diagnosis.gauge import in_a_held_frame
 from designer.diagnosis.problem import Predictor, Problem
 from designer.diagnosis.statistics import heldout_rows, spread
 from designer.effects.effect import NEEDS, Effect, Setting, as_built, frame_size_m
+from designer.effects.load_step import LEAST_ROWS
 from designer.errors import InputError
 from designer.measured.left_handed import left_handed
 from designer.model.machine import Machine
 from designer.model.measured_data import KINDS, Measured, Noise
 from designer.model.measurements import Measurements
+from designer.statics.geometry import cable_geometry
 from designer.study import Study, declared_settings
 
 
@@ -104,6 +106,8 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         e for e in study.known_effects.of(as_built(machine, declared)) if e.key not in declared_keys
     ]
     recorded = _recorded(study, measured)
+    if as_built(machine, declared).robot.pulley_radius_m or "pulley_radius" in measurements.unknown:
+        recorded |= {"pulleys"}
     skipped = {e.key: _missing(e, recorded) or _too_few(e, measured) for e in effects}
     visible = [e for e in effects if not skipped[e.key]]
     given = tuple(
@@ -174,7 +178,7 @@ def _too_few(effect: Effect, measured: Measured) -> str:
         return ""
     seen = measured.without_readings(heldout_rows(measured.n_rows))
     starts = effect.starts_from(measured, seen.readings)
-    return "" if starts else "needs more rows"
+    return "" if starts else "needs more rows, or lengths that change more"
 
 
 def _recorded(study: Study, measured: Measured) -> frozenset[str]:
@@ -184,8 +188,16 @@ def _recorded(study: Study, measured: Measured) -> frozenset[str]:
         "pose": measured.has_poses,
         "length": not np.isnan(measured.length_m).all(),
         "tension": not np.isnan(measured.tension_N).all(),
+        "reversals": _has_reversals(study, measured),
     }
     return measured.columns | {name for name, is_there in recorded.items() if is_there}
+
+
+def _has_reversals(study: Study, measured: Measured) -> bool:
+    """Tell whether some cable turns round a few times at least, by its chord."""
+    chord_m = cable_geometry(study.robot, measured.poses).chord_m
+    signs = np.sign(np.diff(chord_m, axis=0))
+    return bool((np.sum(signs[1:] * signs[:-1] < 0.0, axis=0) >= LEAST_ROWS).any())
 
 
 def first_noise(

@@ -176,6 +176,7 @@ def _finding(outcome: Outcome, effect: Effect, gain: Gain) -> Finding:
     is_near = all(
         abs(estimate[p.name].value - p.neutral) < 2 * estimate[p.name].std
         for p in effect.parameters
+        if not p.is_shape
     )
     doubt = "no value of it is further from doing nothing than twice its standard deviation"
     set_up = [r.key for r in rivals if r.cause == "setting_up" and effect.cause == "physics"]

@@ -18,6 +18,7 @@ from designer.diagnosis.structure import (
     channels_of,
     draws,
 )
+from designer.effects.drum_eccentricity import best_wave
 from designer.effects.load_step import LEAST_ROWS, best_step
 from designer.spelling import in_runs
 
@@ -75,12 +76,6 @@ def with_given_up(
         text = "readings that stand off: counted in full, all that was fitted helps nothing"
         events.append(Event(text, 1.0, 0.0))
     return replace(structure, events=tuple(events))
-
-
-_SHORTEST_WAVE_M = 0.05
-"""Round the smallest drum."""
-_LEAST_WAVES, _MOST_WAVES = 3, 8000
-"""In the span of the lengths: fewer are a bend, and as many as take a second to look at."""
 
 
 def find_events(
@@ -272,41 +267,30 @@ def _end_of(values: FloatArray, remainder: FloatArray, text: str) -> Event | Non
 def _waves(residual: FloatArray, lengths_m: FloatArray) -> Iterator[Event]:
     """Yield the wave in its own length that explains most of each length's residual.
 
-    By least squares (Lomb, Astrophys. Space Sci. 39, 1976). White noise has a share above r with
-    the chance (1 - r)^((n - 3) / 2) in each wave that is looked at.
+    White noise has a share above r with the chance (1 - r)^((n - 3) / 2) in each wave that is
+    looked at.
     """
     for k, length_m in enumerate(lengths_m.T):
         is_read = np.isfinite(residual[:, k]) & np.isfinite(length_m)
-        span_m = float(np.ptp(length_m[is_read])) if is_read.any() else 0.0
-        if is_read.sum() < 4 * LEAST_ROWS or span_m < _LEAST_WAVES * _SHORTEST_WAVE_M:
+        if not is_read.any():
             continue
         column = residual[is_read, k] - np.median(residual[is_read, k])
         limit = 4.0 * max(spread(column), 1.0)
         column = np.clip(column, -limit, limit)
         column = column - column.mean()
-        # A quarter of a wave over the whole span between one and the next.
-        count = min(4.0 * span_m / _SHORTEST_WAVE_M, _MOST_WAVES)
-        waves_per_m = np.arange(4 * _LEAST_WAVES, count) / (4.0 * span_m)
-        shares = [_wave_in(column, length_m[is_read], f)[0] for f in waves_per_m]
-        best = int(np.argmax(shares))
-        share, wave = _wave_in(column, length_m[is_read], waves_per_m[best])
+        best = best_wave(length_m[is_read], column)
+        if best is None:
+            continue
         # What a wave explains does not last of itself.
-        freedom = len(column) / lasting((column - wave)[:, None]).rows - 3.0
-        chance = (1.0 - share) ** (0.5 * max(freedom, 0.0)) * len(shares) * lengths_m.shape[1]
-        height = float(np.ptp(wave)) / 2.0
+        freedom = len(column) / lasting((column - best.values)[:, None]).rows - 3.0
+        looks = best.looks * lengths_m.shape[1]
+        chance = (1.0 - best.share) ** (0.5 * max(freedom, 0.0)) * looks
+        height = float(np.ptp(best.values)) / 2.0
         text = (
-            f"a wave in length {k + 1}, {1.0 / waves_per_m[best]:.3g} m long and {height:.2g} "
+            f"a wave in length {k + 1}, {best.length_m:.3g} m long and {height:.2g} "
             "times the noise high, as a drum off centre makes it"
         )
-        yield Event(text, share, min(1.0, float(chance)))
-
-
-def _wave_in(column: FloatArray, length_m: FloatArray, per_m: float) -> tuple[float, FloatArray]:
-    """Return the share of the variance of a column of zero mean in a wave, and the wave."""
-    turns = 2.0 * np.pi * per_m * length_m
-    basis = np.stack([np.cos(turns), np.sin(turns), np.ones_like(turns)], axis=1)
-    wave = basis @ np.linalg.solve(basis.T @ basis, basis.T @ column)
-    return float(wave @ wave / max(column @ column, 1e-300)), wave
+        yield Event(text, best.share, min(1.0, float(chance)))
 
 
 def _of_a_sensor(gone: BoolArray, residual: FloatArray) -> Iterator[Event]:

@@ -375,15 +375,12 @@ def _doubts(
     spread = np.max([np.diag(covariance) for covariance in (plain, *clustered)], axis=0)
     inflation, wald = {}, {}
     for setting, columns in with_places(settings):
-        away = [setting.values[p.name] - p.neutral for p in setting.effect.parameters] * scale[
-            columns
-        ]
+        acting = np.arange(len(scale))[columns][setting.effect.strength]
+        change = np.array([setting.values[p.name] - p.neutral for p in setting.effect.parameters])
+        away = change[setting.effect.strength] * scale[acting]
+        block = np.ix_(acting, acting)
         wald[setting.effect.key] = min(
-            float(
-                away
-                @ np.linalg.pinv(covariance[columns, columns], rcond=1e-9, hermitian=True)
-                @ away
-            )
+            float(away @ np.linalg.pinv(covariance[block], rcond=1e-9, hermitian=True) @ away)
             for covariance in (plain, *clustered)
         )
         inverse = np.linalg.pinv(plain[columns, columns], rcond=1e-9, hermitian=True)

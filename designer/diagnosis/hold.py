@@ -308,7 +308,7 @@ def _bent(outcome: Outcome) -> Withdrawn | None:
 
 def _no_step(outcome: Outcome) -> Withdrawn | None:
     """Return what begins at a time, if what is left goes with time all the same."""
-    steps = [effect.key for effect in outcome.found if effect.starts_from is not None]
+    steps = [e.key for e in outcome.found if e.starts_from is not None and "time" in e.needs]
     if steps and any(carrier.is_order for carrier in outcome.structure.present):
         return Withdrawn(steps[0], reason=Reason.NO_STEP)
     return None
@@ -335,7 +335,7 @@ def _faint(outcome: Outcome) -> Withdrawn | None:
     from scipy.stats import chi2
 
     for effect in outcome.found:
-        if chi2.sf(outcome.fit.wald[effect.key], len(effect.parameters)) > SIGNIFICANCE:
+        if chi2.sf(outcome.fit.wald[effect.key], sum(effect.strength)) > SIGNIFICANCE:
             return Withdrawn(effect.key, reason=Reason.FAINT)
     return None
 

@@ -339,10 +339,13 @@ class Predictor:
         return guess, true, displayed
 
     def _shown(self, readings: Readings, settings: Sequence[Setting]) -> Readings:
-        placed = self.placed(settings)
+        placed, built = self.placed(settings), self.built(settings)
         for setting in self._all(settings):
-            if setting.effect.on_readings is not None:
-                readings = setting.effect.on_readings(readings, setting.values, placed)
+            change, more = setting.effect.on_readings, {}
+            if setting.effect.takes_machine:  # as the other effects have it
+                more = {"machine": built}
+            if change is not None:
+                readings = change(readings, setting.values, placed, **more)
         return readings
 
 

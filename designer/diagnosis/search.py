@@ -132,7 +132,8 @@ def _chance(gain: float, effect: Effect, looks: int) -> float:
     """Return how probable a gain is by chance in any of so many candidates."""
     from scipy.stats import chi2
 
-    return min(float(chi2.sf(max(gain, 0.0), len(effect.parameters))) * looks, 1.0)
+    chance = float(chi2.sf(max(gain, 0.0), len(effect.parameters)))
+    return min(chance * looks * effect.looks, 1.0)
 
 
 def without(effects: Sequence[Effect], *keys: str) -> list[Effect]:

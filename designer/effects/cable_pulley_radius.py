@@ -29,14 +29,9 @@ def _change(
         of_all[..., cable - 1] for of_all in (level.horizontal_distance_m, level.drop_m)
     )
     radius = machine.robot.pulley_radius_m
-
-    def straight_m(radius_m: float) -> np.ndarray:
-        slope = pulley.straight_slope_rad(distance, drop, radius_m)
-        free = np.sqrt((distance - radius_m) ** 2 + drop**2 - radius_m**2)
-        return np.asarray(free + pulley.wrap_length_m(slope, radius_m))
-
     length = np.array(readings.length_m)
-    length[:, cable - 1] += straight_m(radius + values["radius_m"]) - straight_m(radius)
+    length[:, cable - 1] += pulley.straight_length_m(distance, drop, radius + values["radius_m"])
+    length[:, cable - 1] -= pulley.straight_length_m(distance, drop, radius)
     return replace(readings, length_m=length)
 
 

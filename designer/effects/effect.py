@@ -90,6 +90,8 @@ class Parameter:
         Tells whether it means anything on a machine; where not, it is left out.
     part_of : tuple of str
         Ids of effects with the same number: beside those, it is left out.
+    is_shape : bool
+        Whether it only says how the effect acts, such as a phase, and alone does nothing.
     """
 
     name: str
@@ -101,6 +103,7 @@ class Parameter:
     at_least: float | None = None
     can_have: Callable[[Machine], bool] = any_machine
     part_of: tuple[str, ...] = ()
+    is_shape: bool = False
 
     @property
     def label(self) -> str:
@@ -162,6 +165,8 @@ NEEDS: Mapping[str, str] = {
     "length": "measured lengths",
     "rotation": "a platform that can turn",
     "pose": "measured poses",
+    "pulleys": "declared pulleys",
+    "reversals": "cables that pay out and haul in, row after row",
 }
 """What an effect may need in the data to be seen, in words."""
 
@@ -178,7 +183,8 @@ PoseChange = Callable[..., Poses]
 """From poses as they were measured and `Values` to those that the robot truly had."""
 Cause = Literal["physics", "setting_up"]
 """What the machine does, or an error of frames, points, scales and clocks in setting it up."""
-StartsFrom = Callable[[Measured, FloatArray], Sequence[Values]]
+StartsFrom = Callable[..., Sequence[Values]]
+"""From `Measured` and a residual to values."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -210,13 +216,16 @@ class Effect:
         Whether it concerns one cable, so that it may stand more than once; the law is then given
         ``cable=``, its number from 1.
     takes_machine : bool
-        Whether the law is given ``machine=``, the one that the effect was made for.
+        Whether the law is given ``machine=``: with the readings of all rows the one that has all
+        other effects, else the one that the effect was made for.
     can_have : callable
         Tells whether a machine may have it at all.
     starts : tuple of mapping
         Values to start a fit from, beside the typical ones.
     starts_from : callable or None
         From the data and the residual without it (n_rows, 2 n_cables): values to start from.
+    looks : int
+        In how many places it looks for a start: its gain by chance is that many times as probable.
     reaches_design : bool
         Whether it changes what cable the machine needs.
     of_rope : bool
@@ -245,6 +254,7 @@ class Effect:
     can_have: Callable[[Machine], bool] = any_machine
     starts: tuple[Values, ...] = ()
     starts_from: StartsFrom | None = None
+    looks: int = 1
     reaches_design: bool = False
     of_rope: bool = False
     shifts_lengths: bool = False
@@ -269,6 +279,11 @@ class Effect:
     def needs_motion(self) -> bool:
         """Whether poses at rest do not show it."""
         return "motion" in self.needs
+
+    @property
+    def strength(self) -> list[bool]:
+        """Which of its parameters make it act, the others being its shape."""
+        return [not p.is_shape for p in self.parameters]
 
     def is_among(self, names: Sequence[str]) -> bool:
         """Tell whether one of the names, as in ``measurements.unknown``, is its own."""
@@ -312,6 +327,7 @@ class Effect:
             on_machine=self.on_machine and partial(self.on_machine, **more),
             on_readings=self.on_readings and partial(self.on_readings, **more),
             on_poses=self.on_poses and partial(self.on_poses, **more),
+            starts_from=self.starts_from and partial(self.starts_from, **more),
         )
 
 

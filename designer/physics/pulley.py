@@ -75,6 +75,19 @@ def straight_slope_rad(
         return np.asarray(np.arctan2(drop_m, beyond) + np.arcsin(radius / distance))
 
 
+def straight_length_m(
+    horizontal_distance_m: FloatArray, drop_m: FloatArray, radius_m: ArrayLike
+) -> FloatArray:
+    """Return a straight cable's length from A on, the arc included (...) [m].
+
+    Parameters are those of `straight_slope_rad`.
+    """
+    radius = np.asarray(radius_m, dtype=np.float64)
+    slope = straight_slope_rad(horizontal_distance_m, drop_m, radius)
+    free = np.sqrt((horizontal_distance_m - radius) ** 2 + drop_m**2 - radius**2)
+    return np.asarray(free + wrap_length_m(slope, radius))
+
+
 def lower_slope_rad(
     horizontal_distance_m: FloatArray, drop_m: FloatArray, radius_m: ArrayLike
 ) -> FloatArray:

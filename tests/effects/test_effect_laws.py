@@ -8,14 +8,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from designer.diagnosis.problem import readings_of as foretold
+from designer.effects.backlash import direction_of, dragged_m
 from designer.effects.effect import Effect, Readings, frame_size_m
 from designer.effects.registry import SHIPPED
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.model.robot import Platform, Poses, Robot
+from designer.statics.inverse import solve_sagging
 
 CABLE = Cable(0.01, 0.4, 5e6, 12e3)
 EXIT_POINTS_M = np.array([[0.0, 0.0, 10.0], [20.0, 0.0, 12.0], [8.0, 15.0, 11.0]])
@@ -337,3 +340,92 @@ def test_a_larger_pulley_of_one_cable_is_that_of_all(machine, measured):
 
 def readings_with(machine: Machine, measured: Measured) -> Readings:
     return foretold(machine, measured.poses)
+
+
+def test_an_eccentric_drum_counts_what_its_lever_arm_makes_of_a_turn(machine, measured):
+    eccentricity_m, round_m, phase = 0.004, 0.6, 0.7
+    values = {"amplitude_m": eccentricity_m, "circumference_m": round_m, "phase_rad": phase}
+    counted = readings_of(machine, measured, "drum_eccentricity", cable=2, **values).length_m
+    assert counted[:, [0, 2]] == pytest.approx(LENGTH_M[:, [0, 2]], abs=0.0)
+    # Lever arm R - e cos of the turn, by quadrature from the length counted as it is.
+    at = np.linspace(counted[0, 1], counted[1, 1], 20001)
+    arm = 1.0 - 2 * np.pi / round_m * eccentricity_m * np.cos(2 * np.pi * at / round_m + phase)
+    assert np.trapezoid(arm, at) == pytest.approx(LENGTH_M[1, 1] - LENGTH_M[0, 1], abs=1e-7)
+
+
+def test_backlash_leads_or_is_dragged_by_half_the_play(machine, measured):
+    plays = {"play_1_m": 0.02, "play_2_m": -0.02, "play_3_m": 0.02}
+    shown = readings_of(machine, measured, "backlash", **plays).length_m
+    # Cable 3 first stands still: it has not moved yet.
+    ahead = 0.01 * np.array([[0, 0, 0], [1, 1, 0], [-1, -1, 1]])
+    assert shown - LENGTH_M == pytest.approx(ahead, abs=1e-12)
+
+
+def test_a_dragged_count_stays_where_it_is_within_the_play():
+    length = np.array([[1.0], [1.2], [1.15], [1.11], [np.nan], [1.05], [1.3]])
+    shown = dragged_m(length, np.array([0.1]))
+    expected = np.array([[1.0], [1.15], [1.15], [1.15], [np.nan], [1.1], [1.25]])
+    assert shown == pytest.approx(expected, abs=1e-12, nan_ok=True)
+    out = np.array([[0.0], [1.0], [-1.0], [-1.0], [-1.0], [-1.0], [1.0]])
+    assert direction_of(length) == pytest.approx(out)
+
+
+def test_tension_hysteresis_is_half_the_width_either_way(machine, measured):
+    widths = {"width_1_N": 30.0, "width_2_N": 10.0, "width_3_N": 20.0}
+    tension = readings_of(machine, measured, "tension_hysteresis", **widths).tension_N
+    less = np.array([[0, 0, 0], [15, -5, 0], [-15, 5, 10]])
+    assert TENSION_N - tension == pytest.approx(less, abs=1e-9)
+
+
+def test_an_encoder_on_the_rope_counts_the_strain_of_what_runs_past(machine, measured):
+    length = readings_of(machine, measured, "encoder_on_rope", share=1.0, offset_2_m=0.1).length_m
+    more = (length - LENGTH_M)[:, 1] - 0.1
+    first = -1.0 * 710.0 / CABLE.axial_stiffness_N
+    assert more == pytest.approx([0.0, first, first + 1.5 * 760.0 / CABLE.axial_stiffness_N])
+
+
+def test_load_cells_at_the_platform_read_the_lower_end_of_a_catenary(machine, measured):
+    """Both ends of each cable, as the equilibrium of the robot has them."""
+    statics = solve_sagging(machine.robot, measured.poses, machine.cables)
+    effect = effect_of(machine, "cell_at_platform")
+    assert effect.on_readings is not None
+    winch = Readings(statics.length_m, statics.exit_tension_N)
+    lower = effect.on_readings(winch, {"share": 1.0}, measured).tension_N
+    assert lower == pytest.approx(statics.platform_tension_N, rel=1e-9)
+    assert (statics.exit_tension_N - lower > 10.0).all()
+
+
+def test_an_inclined_pulley_is_an_upright_one_in_a_tilted_room(machine, measured):
+    """The length of a taut string round a fine polygon, in space."""
+    radius_m, tilt = 0.2, np.array([0.15, -0.1, 0.0])
+    with_pulleys = machine_with(machine, "pulley_radius", radius_m=radius_m)
+    effect = effect_of(with_pulleys, "pulley_inclination", cable=2)
+    assert effect.on_readings is not None
+    values = {"rx_rad": tilt[0], "ry_rad": tilt[1]}
+    read = effect.on_readings(Readings(LENGTH_M, TENSION_N), values, measured).length_m
+    assert read[:, [0, 2]] == pytest.approx(LENGTH_M[:, [0, 2]], abs=0.0)
+
+    def string_m(axis: np.ndarray, to_m: np.ndarray) -> float:
+        level = to_m - (to_m @ axis) * axis
+        out = level / np.linalg.norm(level)
+        turns = np.linspace(0.0, np.pi, 200_001)
+        rim = radius_m * (out - np.outer(np.cos(turns), out) + np.outer(np.sin(turns), axis))
+        # A cable that leaves anywhere else than at its tangent point cuts or leaves the rim: the
+        # length over the rim to a point and on in a straight line has its maximum slope there.
+        leaves = np.einsum("ni,ni->n", np.gradient(rim, turns, axis=0), to_m - rim)
+        across = np.linalg.norm(to_m - rim, axis=1) * radius_m
+        at = int(np.argmax(leaves / across))
+        return radius_m * turns[at] + float(np.linalg.norm(to_m - rim[at]))
+
+    tilted = Rotation.from_rotvec(tilt).apply([0.0, 0.0, 1.0])
+    for row in range(3):
+        to_m = POSITION_M[row] - EXIT_POINTS_M[1]
+        change = string_m(tilted, to_m) - string_m(np.array([0.0, 0.0, 1.0]), to_m)
+        assert abs(change) > 1e-3
+        assert read[row, 1] - LENGTH_M[row, 1] == pytest.approx(change, abs=1e-6)
+
+
+def test_an_inclined_pulley_of_no_size_changes_nothing(machine, measured):
+    read = readings_of(machine, measured, "pulley_inclination", cable=1, rx_rad=0.2)
+    assert read.length_m == pytest.approx(LENGTH_M, abs=1e-12)
+    assert read.tension_N == pytest.approx(TENSION_N, abs=1e-9)

@@ -63,11 +63,40 @@ def predict(robot: TwinRobot, effects: Effects, scene: Scene) -> tuple[np.ndarra
     lagged = now
     if "clock_offset" in effects:
         lagged = _equilibrium(robot, effects, scene.earlier(effects["clock_offset"]["offset_s"]))
-    readings = Readings(lagged.length_m, now.exit_tension_N, now.length_m, robot)
+    platform_N = np.linalg.norm(now.platform_pull_N, axis=-1)
+    readings = Readings(lagged.length_m, now.exit_tension_N, now.length_m, platform_N, robot)
+    if "encoder_on_rope" in effects:
+        more_m = effects["encoder_on_rope"]["share"] * _stretch_run_past(robot, effects, scene)
+        readings = replace(readings, length_m=readings.length_m + more_m)
     for name, change in READING.items():
         if name in effects:
             readings = change(readings, scene, effects[name])
     return readings.length_m, readings.tension_N
+
+
+def _stretch_run_past(robot: TwinRobot, effects: Effects, scene: Scene) -> np.ndarray:
+    """Stretch of what ran past the winches since homing (rows, cables) [m]: steps along the way."""
+    steps = 8
+
+    def on_the_way(values: np.ndarray, first: np.ndarray) -> np.ndarray:
+        ends = np.concatenate([first[None], values])
+        share = np.arange(steps)[:, None] / steps
+        ways = (1 - share) * ends[:-1].reshape(len(values), 1, -1)
+        ways = ways + share * ends[1:].reshape(len(values), 1, -1)
+        flat = np.concatenate([ways.reshape(-1, ways.shape[-1]), ends[-1:].reshape(1, -1)])
+        return flat.reshape(-1, *values.shape[1:])
+
+    way = Scene(
+        on_the_way(scene.time_s, scene.time_s[0]),
+        on_the_way(scene.position_m, np.array(robot.pose_m)),
+        on_the_way(scene.rotation_vector_rad, np.zeros(3)),
+        on_the_way(scene.temperature_C, scene.temperature_C[0]),
+        on_the_way(scene.wind_m_per_s, scene.wind_m_per_s[0]),
+    )
+    held = _equilibrium(robot, effects, way)
+    strain = held.exit_tension_N / robot.stiffness_N
+    pieces = 0.5 * (strain[1:] + strain[:-1]) * np.diff(held.length_m, axis=0)
+    return np.cumsum(pieces, axis=0)[steps - 1 :: steps]
 
 
 def swayed(robot: TwinRobot, effects: Effects, scene: Scene, *, chords: bool = False) -> Scene:
@@ -201,6 +230,13 @@ def _cable_mass_drift(machine: Machine, scene: Scene, p: Parameters) -> Machine:
     return replace(machine, linear_mass=machine.linear_mass * (1 + p["gain"] * share[:, None]))
 
 
+def _pulley_inclination(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    axis = np.tile([0.0, 0.0, 1.0], (machine.exit_m.shape[1], 1))
+    turn = Rotation.from_rotvec([p["rx_rad"], p["ry_rad"], 0.0])
+    axis[int(p["cable"]) - 1] = turn.apply([0.0, 0.0, 1.0])
+    return replace(machine, pulley_axis=axis)
+
+
 def _stiffening(machine: Machine, scene: Scene, p: Parameters) -> Machine:
     return replace(machine, toe_strain=p["toe_strain"], toe_tension_N=p["toe_tension_N"])
 
@@ -223,6 +259,7 @@ MACHINE: dict[str, Callable[[Machine, Scene, Parameters], Machine]] = {
     "mast_compliance": _mast_compliance,
     "cable_mass_drift": _cable_mass_drift,
     "stiffening": _stiffening,
+    "pulley_inclination": _pulley_inclination,
 }
 
 
@@ -236,6 +273,7 @@ class Readings:
     length_m: np.ndarray
     tension_N: np.ndarray
     true_length_m: np.ndarray
+    platform_N: np.ndarray
     robot: TwinRobot
 
 
@@ -294,14 +332,53 @@ def _length_offset(readings: Readings, scene: Scene, p: Parameters) -> Readings:
     return replace(readings, length_m=readings.length_m + _per_cable(p, "m"))
 
 
-def _encoder_backlash(readings: Readings, scene: Scene, p: Parameters) -> Readings:
-    """The reading follows the length only at the end of a play of ``width_m``."""
-    lower = readings.length_m - p["width_m"] / 2
-    upper = readings.length_m + p["width_m"] / 2
+def _backlash(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    """A driving side comes first by half the play; one that is dragged (play < 0) comes last."""
     reading = readings.length_m.copy()
-    for row in range(1, len(reading)):
-        reading[row] = np.clip(reading[row - 1], lower[row], upper[row])
+    for column, length in enumerate(readings.length_m.T):
+        play, side = p[f"play_{column + 1}_m"], 0.0
+        lower, upper = length - abs(play) / 2, length + abs(play) / 2
+        for row in range(1, len(length)):
+            if play < 0:
+                reading[row, column] = np.clip(reading[row - 1, column], lower[row], upper[row])
+                continue
+            if length[row] != length[row - 1]:
+                side = 1.0 if length[row] > length[row - 1] else -1.0
+            reading[row, column] += side * play / 2
     return replace(readings, length_m=reading)
+
+
+def _drum_eccentricity(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    """The drum's turns against what they pay out, from homing on, by a table of both."""
+    homed = readings.robot.reference_length_m[int(p["cable"]) - 1]
+    length = readings.length_m[:, int(p["cable"]) - 1]
+    count = np.linspace(length.min() - 1.0, length.max() + 1.0, 400_001)
+
+    def lifted(shown: np.ndarray | float) -> np.ndarray:
+        return p["amplitude_m"] * np.sin(2 * np.pi * shown / p["circumference_m"] + p["phase_rad"])
+
+    paid_out = count - lifted(count) + lifted(homed)
+    return _of_winch(readings, p, lambda true: np.interp(true, paid_out, count))
+
+
+def _encoder_on_rope(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    return readings  # already in: `predict` follows the rope from pose to pose
+
+
+def _cell_at_platform(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    change = p["share"] * (readings.platform_N - readings.tension_N)
+    return replace(readings, tension_N=readings.tension_N + change)
+
+
+def _tension_hysteresis(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    tension = readings.tension_N.copy()
+    for column, length in enumerate(readings.true_length_m.T):
+        side = 0.0
+        for row in range(1, len(length)):
+            if length[row] != length[row - 1]:
+                side = 1.0 if length[row] > length[row - 1] else -1.0
+            tension[row, column] -= side * p[f"width_{column + 1}_N"] / 2
+    return replace(readings, tension_N=tension)
 
 
 def _pulley_friction(readings: Readings, scene: Scene, p: Parameters) -> Readings:
@@ -330,14 +407,18 @@ READING: dict[str, Callable[[Readings, Scene, Parameters], Readings]] = {
     "thermal_expansion": _thermal_expansion,
     "creep": _creep,
     "cable_creep": _cable_creep,
+    "encoder_on_rope": _encoder_on_rope,
     "drum_layering": _drum_layering,
     "drum_scale": _drum_scale,
     "tension_length": _tension_length,
     "winch_scale": _winch_scale,
     "length_offset": _length_offset,
     "winch_zero": _winch_zero,
-    "encoder_backlash": _encoder_backlash,
+    "drum_eccentricity": _drum_eccentricity,
+    "backlash": _backlash,
+    "cell_at_platform": _cell_at_platform,
     "pulley_friction": _pulley_friction,
+    "tension_hysteresis": _tension_hysteresis,
     "tension_gain": _tension_gain,
     "tension_bias": _tension_bias,
 }
@@ -380,7 +461,6 @@ def as_seen(scene: Scene, effects: Effects) -> Scene:
 UNLISTED = (
     "tower_settles",
     "cable_mass_drift",
-    "encoder_backlash",
 )
 """Effects that the contract does not know."""
 

@@ -45,6 +45,8 @@ class Machine:
         Strain is T/EA + toe_strain (1 - exp(-T/toe_tension_N)).
     pulley_radius_m : array
         Radius of the swivelling pulleys [m].
+    pulley_axis : array (cables, 3) or None
+        Axes about which they swivel; None where those are vertical.
     mast_m_per_N : array
         Exit point's movement per horizontal cable force on it, along that force [m/N].
     bending_N_m2 : array
@@ -66,6 +68,7 @@ class Machine:
     toe_strain: float = 0.0
     toe_tension_N: float = 1.0
     pulley_radius_m: np.ndarray | float = 0.0
+    pulley_axis: np.ndarray | None = None
     mast_m_per_N: np.ndarray | float = 0.0
     bending_N_m2: np.ndarray | float = 0.0
     set_cables: tuple[int, ...] = ()
@@ -181,12 +184,14 @@ def _support(
         exit_m = exit_m + np.asarray(machine.mast_m_per_N)[..., None] * level
     if np.any(machine.pulley_radius_m):
         radius = np.asarray(machine.pulley_radius_m)[..., None]
-        size = np.linalg.norm(level, axis=-1)
+        axis = -down if machine.pulley_axis is None else machine.pulley_axis
+        along = (end * axis).sum(-1)
+        size = np.linalg.norm(end - along[..., None] * axis, axis=-1)
         toward = point - exit_m
-        toward = toward - (toward @ down)[..., None] * down
+        toward = toward - (toward * axis).sum(-1, keepdims=True) * axis
         toward /= np.linalg.norm(toward, axis=-1, keepdims=True)
-        fall = np.arctan2(-(end @ down), size)  # below the horizontal, toward the platform
-        spoke = np.sin(fall)[..., None] * toward - np.cos(fall)[..., None] * down
+        fall = np.arctan2(along, size)  # from the axis's plane downward, toward the platform
+        spoke = np.sin(fall)[..., None] * toward + np.cos(fall)[..., None] * axis
         exit_m = exit_m + radius * (toward + spoke)
         wrap = radius[..., 0] * (np.pi / 2 + fall)
     if np.any(machine.bending_N_m2):

@@ -141,7 +141,14 @@ class TwinRobot:
             "mast_compliance": lambda: {"compliance_m_per_N": size},
             "cable_mass_drift": lambda: {"gain": size},
             "stiffening": lambda: {"toe_strain": size, "toe_tension_N": middle_N},
-            "encoder_backlash": lambda: {"width_m": size},
+            "backlash": lambda: {f"play_{k}_m": v for k, v in enumerate(offsets, 1)},
+            "drum_eccentricity": lambda: {
+                "cable": cable, "amplitude_m": size, "phase_rad": float(np.pi * direction[0]),
+                "circumference_m": 0.1 * float(np.sqrt(np.ptp(self.exit_m, axis=0).max())),
+            },
+            "encoder_on_rope": lambda: {"share": size},
+            "cell_at_platform": lambda: {"share": size},
+            "tension_hysteresis": lambda: {f"width_{k}_N": v for k, v in enumerate(offsets, 1)},
         }[effect]()  # fmt: skip
 
 
@@ -162,6 +169,8 @@ _COMMON = {
     "cable_mass": (0.2, 1.0),
     "winch_scale": (3e-4, 0.7),
     "pose_scale": (3e-4, 1e-2),
+    "encoder_on_rope": (0.3, 2.0),
+    "cell_at_platform": (0.3, 1.2),
 }
 
 YARD3 = TwinRobot(
@@ -196,7 +205,9 @@ YARD3 = TwinRobot(
         "tension_length": (3e-7, 1e-5),
         "cable_mass_drift": (0.2, 1.5),
         "stiffening": (1e-4, 3e-3),
-        "encoder_backlash": (0.004, 0.05),
+        "backlash": (0.004, 0.05),
+        "drum_eccentricity": (0.004, 0.05),
+        "tension_hysteresis": (1.0, 100.0),
     },
 )
 
@@ -235,7 +246,9 @@ FAST3 = TwinRobot(
         "tension_length": (1e-7, 5e-6),
         "cable_mass_drift": (0.002, 0.3),
         "stiffening": (1e-5, 1e-3),
-        "encoder_backlash": (0.02, 0.3),
+        "backlash": (0.02, 0.3),
+        "drum_eccentricity": (0.02, 0.3),
+        "tension_hysteresis": (20.0, 2000.0),
     },
 )
 
@@ -282,7 +295,9 @@ HALL6 = TwinRobot(
         "tension_length": (5e-7, 1e-5),
         "cable_mass_drift": (0.4, 2.0),
         "stiffening": (1e-4, 3e-3),
-        "encoder_backlash": (0.002, 0.02),
+        "backlash": (0.002, 0.02),
+        "drum_eccentricity": (0.002, 0.02),
+        "tension_hysteresis": (1.0, 50.0),
     },
 )  # fmt: skip
 

@@ -1,0 +1,40 @@
+"""What small moves of exit points do to the tensions."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.model.robot import Poses, Robot
+from designer.statics.geometry import cable_geometry, density_matrix, upright_exit_points_m
+
+_NOTHING = 1e-12
+"""Of the trace of a Gram matrix: lets it be solved where cables leave a direction free."""
+
+
+def rebalancing_N(
+    robot: Robot, poses: Poses, tension_N: FloatArray, moves_m: FloatArray
+) -> FloatArray:
+    """Return by how much tensions change where cables turn as their exit points move.
+
+    The least change that keeps the balance of straight cables, to first order.
+
+    Parameters
+    ----------
+    robot, poses
+        The robot, and its poses (n_rows,).
+    tension_N : array (n_rows, n_cables)
+        Before that [N].
+    moves_m : array (n_rows, n_cables, 3)
+        Of the exit points, upright frame [m].
+    """
+    geometry = cable_geometry(robot, poses)
+    moved = cable_geometry(robot, poses, upright_exit_points_m(robot) + moves_m)
+    before, after = (
+        density_matrix(robot, way) / way.chord_m[..., None, :] for way in (geometry, moved)
+    )
+    lost = (after - before) @ np.nan_to_num(tension_N)[..., None]
+    gram = before @ np.swapaxes(before, -1, -2)
+    ridge = _NOTHING * np.trace(gram, axis1=1, axis2=2)[:, None, None] * np.eye(gram.shape[-1])
+    share = np.linalg.solve(gram + ridge, lost)
+    return np.asarray(-(np.swapaxes(before, -1, -2) @ share)[..., 0])
