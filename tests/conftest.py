@@ -15,9 +15,10 @@ from designer.arrays import FloatArray, frozen_array
 from designer.cli import terminal
 from designer.io.config.schema import WorkspaceSection
 from designer.model.cable import Material
-from designer.model.robot import Platform, Robot
+from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
 from designer.plugins import examine
+from designer.sizing.newton import size_poses
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -81,6 +82,21 @@ def compiles_without_a_word() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(terminal, "announce_compiling", lambda: None)
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def compiled_by_one(request: pytest.FixtureRequest, fast_robot: Robot, steel: Material) -> None:
+    """Let the second worker compile the largest kernels, so that no other does so beside it.
+
+    The others begin with files that need none: those of most tests.
+    """
+    worker = getattr(request.config, "workerinput", {}).get("workerid")
+    if worker == "gw1" and len(request.session.items) > 2000:
+        everywhere = np.random.default_rng(0).uniform([-100, -100, -200], [600, 500, 50], (30, 3))
+        corner = frozen_array([[500.0, 433.01, 0.0]])
+        four = replace(fast_robot, exit_points_m=np.vstack([fast_robot.exit_points_m, corner]))
+        for robot in (fast_robot, four):
+            size_poses(robot, Poses.at(everywhere), steel)
 
 
 @pytest.fixture

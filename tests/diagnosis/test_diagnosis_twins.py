@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +51,21 @@ def twin(robot: TwinRobot, effect: str, over_noise: float, seed: int = 0) -> Dat
     return make(robot, {effect: robot.draw(effect, size, seed)}, seed=seed, settled=settled)
 
 
+Twins = Callable[[str, str], tuple[DataSet, Diagnosis]]
+"""Makes the twin of a robot with one effect and diagnoses it, once for all tests that ask."""
+
+
+@pytest.fixture(scope="module")
+def twins(tmp_path_factory: pytest.TempPathFactory) -> Twins:
+    @cache
+    def diagnosed(robot: str, effect: str) -> tuple[DataSet, Diagnosis]:
+        dataset = twin({one.name: one for one in (YARD3, HALL6)}[robot], effect, 10.0)
+        folder = tmp_path_factory.mktemp(effect)
+        return dataset, diagnose(case_in(study_of(dataset, folder)))
+
+    return diagnosed
+
+
 @pytest.mark.parametrize(
     ("robot", "effect"),
     [
@@ -70,9 +87,8 @@ def twin(robot: TwinRobot, effect: str, over_noise: float, seed: int = 0) -> Dat
     ],
     ids=lambda value: getattr(value, "name", value),
 )
-def test_a_single_effect_is_found_first_with_its_size(robot, effect, tmp_path) -> None:
-    dataset = twin(robot, effect, 10.0)
-    found = diagnose(case_in(study_of(dataset, tmp_path)))
+def test_a_single_effect_is_found_first_with_its_size(robot, effect, twins) -> None:
+    dataset, found = twins(robot.name, effect)
     assert [finding.effect.id for finding in found.findings] == [effect]
     assert not found.is_unexplained
     truth = dict(dataset.effects[effect])
@@ -116,10 +132,10 @@ def test_mass_that_drifts_is_unexplained_and_goes_with_time(tmp_path) -> None:
     assert found.correction is not None
 
 
-def test_rows_held_out_change_no_finding(tmp_path) -> None:
+def test_rows_held_out_change_no_finding(twins, tmp_path) -> None:
     """Spoiling what no fit may see leaves every fitted number as it is."""
-    case = case_in(study_of(twin(YARD3, "elastic_modulus", 10.0), tmp_path))
-    clean = diagnose(case)
+    dataset, clean = twins(YARD3.name, "elastic_modulus")
+    case = case_in(study_of(dataset, tmp_path))
     unseen = heldout_rows(case.measured.n_rows)
     length = np.array(case.measured.length_m)
     length[unseen] += np.random.default_rng(0).normal(0, 0.003, length[unseen].shape)
@@ -167,23 +183,22 @@ def test_unknowns_from_the_start_are_fitted_and_no_finding(tmp_path) -> None:
     assert values == pytest.approx(offsets, abs=1e-3)
 
 
-def diagnosed(effect: str, folder: Path) -> tuple[Diagnosis, Study]:
-    """Return the diagnosis, and the study read back from the config that it writes."""
-    found = diagnose(case_in(study_of(twin(YARD3, effect, 10.0), folder)))
-    better = folder / "elsewhere" / "config.diagnosed.yaml"
-    better.parent.mkdir()
-    better.write_text(diagnosed_config(found, better.parent))
-    return found, read_study(better)
+def written(found: Diagnosis, folder: Path) -> Study:
+    """Return the study read back from the config that a diagnosis writes."""
+    better = folder / "config.diagnosed.yaml"
+    better.write_text(diagnosed_config(found, folder))
+    return read_study(better)
 
 
 @pytest.mark.parametrize("effect", ["pulley_radius", "elastic_modulus", "linear_mass"])
-def test_the_design_follows_what_was_found(effect, tmp_path) -> None:
+def test_the_design_follows_what_was_found(effect, twins, tmp_path) -> None:
     """The diagnosed config gives the tensions that the other physics gives with the effect.
 
     What was found of the rope is of the rope on the machine; a rope of the catalogue is as its
     data sheet says.
     """
-    found, better = diagnosed(effect, tmp_path)
+    _, found = twins(YARD3.name, effect)
+    better = written(found, tmp_path)
     assert [one.id for one in better.effects] == [effect]
     assert read_measured(better).n_rows == found.measured.n_rows
     built = as_built_by(better, mounted=True)
@@ -219,9 +234,9 @@ def told_of(found: Diagnosis) -> Diagnosis:
     return with_design(replace(found, study=study), grades)
 
 
-def test_a_heavy_rope_on_the_machine_changes_no_other_rope(tmp_path) -> None:
+def test_a_heavy_rope_on_the_machine_changes_no_other_rope(twins) -> None:
     """It was found of that rope: a new one, and the configured family, are not heavier."""
-    told = told_of(diagnosed("linear_mass", tmp_path)[0])
+    told = told_of(twins(YARD3.name, "linear_mass")[1])
     assert told.design_before is not None
     assert told.design_after == told.design_before
     assert told.mounted_before is not None
@@ -231,14 +246,14 @@ def test_a_heavy_rope_on_the_machine_changes_no_other_rope(tmp_path) -> None:
     assert json.dumps(told.to_dict(), allow_nan=False)
 
 
-def test_what_is_found_of_the_machine_changes_the_design(tmp_path) -> None:
-    found, better = diagnosed("platform_mass", tmp_path)
+def test_what_is_found_of_the_machine_changes_the_design(twins, tmp_path) -> None:
+    _, found = twins(YARD3.name, "platform_mass")
     told = told_of(found)
     assert told.design_before is not None
     assert told.design_after is not None
     heavier = found.settings[0].values["offset_kg"] > 0.0
     assert (told.design_after.optimum_m > told.design_before.optimum_m) is heavier
-    again = told_of(replace(found, study=better, findings=(), given=()))
+    again = told_of(replace(found, study=written(found, tmp_path), findings=(), given=()))
     assert told.design_after == again.design_before
 
 
