@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import designer
@@ -23,7 +24,11 @@ ROOMS = [
 
 FOLDER = Path(designer.__file__).parent
 FILES = sorted(FOLDER.rglob("*.py"))
-TREES = {file: ast.parse(file.read_text(encoding="utf-8")) for file in FILES}
+
+
+@cache
+def trees() -> dict[Path, ast.Module]:
+    return {file: ast.parse(file.read_text(encoding="utf-8")) for file in FILES}
 
 
 def room_of(file: Path) -> str:
@@ -32,7 +37,7 @@ def room_of(file: Path) -> str:
 
 def imported_rooms(file: Path) -> set[str]:
     """Rooms that a file imports from at run time, wherever in the file."""
-    tree = TREES[file]
+    tree = trees()[file]
     only_types = {
         id(inner)
         for node in ast.walk(tree)
@@ -84,7 +89,7 @@ def variables_of(tree: ast.Module) -> Iterator[str]:
 
 
 def test_variables_are_named_for_what_they_hold() -> None:
-    names = [name.lstrip("_") for tree in TREES.values() for name in variables_of(tree)]
+    names = [name.lstrip("_") for tree in trees().values() for name in variables_of(tree)]
     pronouns = Counter(name for name in names if name in PRONOUNS)
     assert len(names) > 10_000
     assert pronouns.total() <= SHARE_OF_PRONOUNS * len(names), pronouns.most_common(10)
@@ -94,7 +99,7 @@ def test_no_room_asks_a_region_what_it_is() -> None:
     kinds = {cls.__name__ for cls in (Region, Prism, Rectangle, PointList)}
     asked = [
         f"{file.relative_to(FOLDER)}:{node.lineno}"
-        for file, tree in TREES.items()
+        for file, tree in trees().items()
         for node in ast.walk(tree)
         if isinstance(node, ast.Call)
         and ast.unparse(node.func) == "isinstance"
