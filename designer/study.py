@@ -41,18 +41,22 @@ class RopeLimits:
         cable shall swing as a string.
     drum_capacity_m : float or None
         Rope that a drum takes up, beside its dead turns [m].
+    platform_frequency_Hz : tuple of float or None
+        Least natural frequency of the platform, or a band in which none of them shall be [Hz].
     """
 
     stiffness_N_per_m: checked.Positive | None = None
     excitation_Hz: tuple[float, float] | None = None
     drum_capacity_m: checked.Positive | None = None
+    platform_frequency_Hz: tuple[float] | tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
-        if self.excitation_Hz is not None:
-            low, high = self.excitation_Hz
-            checked.Number(above=0.0).require("excitation_Hz", low)
-            checked.Number(above=low).require("excitation_Hz", high)
+        for name in ("excitation_Hz", "platform_frequency_Hz"):
+            low = 0.0
+            for end in getattr(self, name) or ():
+                checked.Number(above=low).require(name, end)
+                low = end
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,6 +249,7 @@ class Study:
             raise ValueError("load cases are not for groups of cables")
         if self.uncertainty and (self.selection is None or self.selection.groups):
             raise ValueError("uncertainty needs a selection, without groups")
+        self._check_inertia()
         for case in self.load_cases:
             case_factors = case.safety_factor, case.termination_efficiency
             if self.selection is None and case_factors != (None, None):
@@ -259,6 +264,17 @@ class Study:
             lost = case.cable_lost
             if lost not in (None, EACH) and int(lost) > self.robot.n_cables:
                 raise ValueError(f"there is no cable {lost} to be lost in '{case.name}'")
+
+    def _check_inertia(self) -> None:
+        has_limit = self.selection and self.selection.limits.platform_frequency_Hz
+        if not has_limit or self.robot.is_point_mass:
+            return
+        known = [
+            self.robot.platform.inertia_kg_m2,
+            *(c.inertia_kg_m2 for c in self.load_cases if c.mass_kg),
+        ]
+        if any(inertia is None for inertia in known):
+            raise ValueError("a limit of the platform's frequencies needs its inertia")
 
     @property
     def pose_outside(self) -> str:

@@ -74,6 +74,7 @@ TEMPERATURE_CHANGE = Dimension("a change of temperature", "K", "-30 K")
 SPEED = Dimension("a speed", "m/s", "3 m/s")
 FREQUENCY = Dimension("a frequency", "Hz", "2 Hz")
 STIFFNESS = Dimension("a force per displacement", "N/m", "50 kN/m")
+INERTIA = Dimension("a moment of inertia", "kg*m^2", "300 kg*m^2")
 ACCELERATION = Dimension("an acceleration", "m/s^2", "0.5 m/s^2")
 
 

@@ -18,6 +18,7 @@ from designer.analysis.governing import (
     governing_pose,
     governing_ropes,
 )
+from designer.analysis.modes import PlatformModes, modes_of
 from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.analysis.provenance import Provenance
 from designer.analysis.requirements import requirements_of
@@ -227,6 +228,11 @@ class Analysis:
         return governing_ropes(self)
 
     @cached_property
+    def modes(self) -> PlatformModes | None:
+        """How the platform oscillates there; None where nothing holds it or inertia lacks."""
+        return modes_of(self)
+
+    @cached_property
     def worst_sizing(self) -> Sizing | None:
         """The cable that the worst pose of the workspace needs; None where none is finite."""
         if self.workspace is None or self.workspace.sagging is None:
@@ -339,7 +345,7 @@ class Analysis:
 _STAGES = (
     *("pose", "workspace", "selection", "groups", "needs", "qualities", "requirements"),
     *("verification", "carries", "group_slopes", "servable", "uncertainty"),
-    *("worst_sizing", "outside", "governing", "findings"),
+    *("worst_sizing", "outside", "governing", "findings", "modes"),
 )
 """In the order in which their progress is shown."""
 

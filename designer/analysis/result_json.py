@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from designer import __version__
 from designer.analysis.analyse import Analysis
 from designer.analysis.carries import carries_dict
+from designer.analysis.modes import PlatformModes
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.selection_json import selection_dict
 from designer.analysis.uncertainty.uncertainty import uncertainty_dict
@@ -56,6 +57,7 @@ def result_dict(analysis: Analysis, is_read: IsRead = _everything) -> Json:
             "uncertainty": uncertainty_dict(
                 analysis.uncertainty if is_read("uncertainty") else None
             ),
+            **(_modes(analysis.modes if is_read("modes") or is_read("modes_at") else None)),
             "findings": analysis.findings if is_read("findings") else None,
             "proof": (selection and selection.proof) or Proof("off"),
             "verification": analysis.verification if is_read("verification") else [],
@@ -208,6 +210,10 @@ def _qualities(qualities: Qualities | None) -> Json:
         "interference": None if interference is None else _interference(interference),
         "hanging": None if qualities is None else qualities.hanging,
     }
+
+
+def _modes(modes: PlatformModes | None) -> Json:
+    return {"modes": [] if modes is None else [*modes.rows()], "modes_at": modes}
 
 
 def _interference(survey: Interference) -> Json:

@@ -41,6 +41,7 @@ BOUNDS: Mapping[str, Bound] = {
     "sheave": Bound(units.LENGTH, 1e-3, 15.0, "the sheaves of mine hoists have up to 9 m"),
     "rope diameter": Bound(units.LENGTH, 1e-4, 0.5, "from a thread to a cable of a bridge"),
     "mass": Bound(units.MASS, 1e-6, 1e8, "from a grain to a ship"),
+    "inertia": Bound(units.INERTIA, -1e12, 1e12, "of a ship, about a far point"),
     "density": Bound(units.DENSITY, 1.0, 3e4, "air has 1.2, osmium 22 600"),
     "mass per length": Bound(
         units.LINEAR_DENSITY, 1e-7, 5e3, "from a thread to a cable of a bridge"

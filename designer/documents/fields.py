@@ -6,15 +6,19 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Annotated, Any, get_args, get_origin
 
+import numpy as np
 from pydantic import (
     AfterValidator,
     BeforeValidator,
+    Discriminator,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
+    Tag,
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from designer import units
+from designer.arrays import FloatArray, frozen_array
 from designer.documents.bounds import BOUNDS
 from designer.documents.document import printable
 from designer.documents.plain import why_unreadable
@@ -258,6 +262,25 @@ def _not_zero(direction: tuple[float, float, float]) -> tuple[float, float, floa
     return direction
 
 
+def _of_a_body(parts: tuple[float, ...]) -> tuple[float, ...]:
+    if len(parts) not in (3, 6):
+        raise refusal(f"the list has {len(parts)} values", _INERTIAS)
+    principal = np.linalg.eigvalsh(symmetric(parts))
+    if principal[0] <= 0.0 or principal[0] + principal[1] < principal[2] * (1.0 - 1e-9):
+        values = ", ".join(f"{value:.4g}" for value in principal)
+        problem = f"no body has the principal moments {values} kg*m^2"
+        raise refusal(problem, "moments above zero, the largest at most the sum of the others")
+    return parts
+
+
+def symmetric(parts: tuple[float, ...]) -> FloatArray:
+    """Return the matrix (3, 3) of xx, yy, zz and, where they are given, xy, xz, yz."""
+    matrix = np.diag(parts[:3])
+    for (row, column), value in zip(((0, 1), (0, 2), (1, 2)), parts[3:], strict=False):
+        matrix[row, column] = matrix[column, row] = value
+    return frozen_array(matrix)
+
+
 def different(names: tuple[str, ...]) -> tuple[str, ...]:
     """Return the names unchanged, or refuse them if one stands twice."""
     twice = next((name for index, name in enumerate(names) if name in names[:index]), None)
@@ -293,6 +316,7 @@ def bounded(name: str, kind: type[QuantityField] = QuantityField) -> QuantityFie
 
 
 _INTERVAL = "[lower, upper]"
+_INERTIAS = "moments of inertia [xx, yy, zz], or [xx, yy, zz, xy, xz, yz]"
 _DIRECTION = "a direction such as [0, 0, -1]"
 _LEAST_OF_A_DIRECTION = 1e-6
 
@@ -308,6 +332,7 @@ TensionNoise = Annotated[float, bounded("tension noise")]
 SearchTime = Annotated[float, bounded("search time")]
 ProofTime = Annotated[float, bounded("proof time")]
 Mass = Annotated[float, bounded("mass")]
+Inertia = Annotated[float, bounded("inertia")]
 Density = Annotated[float, bounded("density")]
 LinearDensity = Annotated[float, bounded("mass per length")]
 AxialStiffness = Annotated[float, bounded("axial stiffness")]
@@ -348,6 +373,11 @@ Band = Annotated[
     list_of(2, 2, _INTERVAL),
     AfterValidator(partial(_rising, unit="Hz")),
 ]
+BandOrLeast = Annotated[
+    Annotated[Band, Tag("a band")] | Annotated[Frequency, Tag("a frequency")],
+    Discriminator(lambda given: "a band" if isinstance(given, list | tuple) else "a frequency"),
+]
+Inertias = Annotated[tuple[Inertia, ...], list_of(3, 6, _INERTIAS), AfterValidator(_of_a_body)]
 Corner = Annotated[tuple[Length, Length], list_of(2, 2, "two lengths [x, y]")]
 Point = Annotated[tuple[Length, Length, Length], list_of(3, 3, "three lengths [x, y, z]")]
 Rotation = Annotated[tuple[Angle, Angle, Angle], list_of(3, 3, "three angles [rx, ry, rz]")]

@@ -34,6 +34,8 @@ _LEFT_OUT = ("format", "robot.planar", "measurements.settled")
 _OF_A_BODY = (
     "robot.platform.centre_of_mass",
     "robot.platform.wrench.moment",
+    "robot.platform.inertia",
+    "load_cases.inertia",
     "pose.rotation_vector",
 )
 _ROUND = 3

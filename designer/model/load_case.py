@@ -18,6 +18,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import Annotated
 
 import numpy as np
 
@@ -137,6 +138,25 @@ class Loaded:
         return change_K * self.cable.expansion_per_K if change_K else 0.0
 
     @property
+    def moving_body(self) -> Platform:
+        """The platform with the mass and inertia that are accelerated: no dynamic factor.
+
+        Its inertia is not known where the case changes the mass and says no more.
+        """
+        case, body = self.case, self.bare[0].platform
+        inertia = body.inertia_kg_m2 if case.mass_kg is None else None
+        if case.inertia_kg_m2 is not None:
+            inertia = case.inertia_kg_m2
+        return replace(body, mass_kg=case.mass_on(body), inertia_kg_m2=inertia)
+
+    @property
+    def moving_density_kg_per_m(self) -> float:
+        """Mass per length of the cables with ice: wind loads them, and adds none."""
+        cable, ice = self.bare[1], self.case.ice
+        around = 0.0 if ice is None else ice.linear_density_kg_per_m(cable.diameter_m)
+        return cable.linear_density_kg_per_m + around
+
+    @property
     def keeps_lengths(self) -> bool:
         """Whether the winches are braked, so that the platform settles: after a loss, by warmth."""
         return self.lost_cable is not None or self.growth != 0.0
@@ -169,6 +189,8 @@ class LoadCase:
         Its name.
     mass_kg : float or None
         Mass of the platform with its payload [kg].
+    inertia_kg_m2 : array (3, 3) or None
+        As `Platform.inertia_kg_m2`, of the platform with its payload [kg·m²].
     wrench_N : array (6,) or None
         Constant force and moment on the platform, as `Platform.wrench_N` [N, N·m].
     dynamic_factor : float
@@ -203,6 +225,7 @@ class LoadCase:
     safety_factor: checked.Factor | None = None
     termination_efficiency: checked.Efficiency | None = None
     region: Region | None = None
+    inertia_kg_m2: Annotated[FloatArray, checked.Shape((3, 3))] | None = None
 
     def __post_init__(self) -> None:
         checked.check_fields(self)

@@ -40,6 +40,9 @@ class Platform(checked.Value):
     mass_offset_kg : float
         Share of the mass that a load case does not replace: what the platform weighs beyond its
         drawing [kg].
+    inertia_kg_m2 : array (3, 3) or None
+        Moments of inertia about the centre of mass, along the axes of the body frame; None where
+        they are not known. Products are minus the integrals of x y and so on [kg·m²].
     """
 
     mass_kg: checked.NotNegative
@@ -50,6 +53,7 @@ class Platform(checked.Value):
     centre_force_N: checked.Vector = field(default_factory=lambda: frozen_array(np.zeros(3)))
     drag_area_m2: checked.NotNegative | None = None
     mass_offset_kg: float = 0.0
+    inertia_kg_m2: Annotated[FloatArray, checked.Shape((3, 3))] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

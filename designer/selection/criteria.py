@@ -15,6 +15,7 @@ from designer.model.robot import Robot
 from designer.model.winches import Winches
 from designer.model.workspace import Workspace
 from designer.statics.inverse import Statics
+from designer.statics.modes import lowest_bound_Hz, platform_frequencies_Hz
 from designer.statics.shape import sag_ratio, string_frequency_Hz
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Selection
@@ -22,6 +23,8 @@ from designer.workspace.clearance import names_of, smallest_clearance
 
 ROUNDING = 1e-9
 """Relative: how exactly the solver keeps a limit that it chooses the internal forces by."""
+_APART = 0.02
+"""Relative: how much lower the lowest frequency with the cables' own may be before it is told."""
 WHERE = "searched over the poses of the case"
 
 
@@ -45,7 +48,7 @@ class Criterion:
     at_rest_after_loss : bool
         Whether it is asked of the state after the loss of a cable as well.
     detail : callable or None
-        Returns between what a distance is there, of equilibria (1,).
+        Returns what to know of it there, such as between what a distance is, of equilibria (1,).
     """
 
     id: str
@@ -58,7 +61,7 @@ class Criterion:
     kind: Literal["at_most", "at_least", "above", "outside"]
     has_ratio: bool = True
     at_rest_after_loss: bool = False
-    detail: Callable[[Statics], str] | None = None
+    detail: Callable[[Loaded, Statics], str] | None = None
 
     def severity(self, quantity: FloatArray) -> FloatArray:
         """Return what grows as the quantity comes nearer to failing, NaN where that is NaN."""
@@ -178,7 +181,7 @@ def _of_workspace(workspace: Workspace) -> Iterator[Criterion]:
             limits=(workspace.clearance_m,),
             kind="at_least",
             at_rest_after_loss=True,
-            detail=lambda statics: " and ".join(
+            detail=lambda _, statics: " and ".join(
                 names_of(tuple(smallest_clearance(statics).pair[0]))
             ),
         )
@@ -187,6 +190,8 @@ def _of_workspace(workspace: Workspace) -> Iterator[Criterion]:
 def _of_limits(selection: Selection) -> Iterator[Criterion]:
     """Yield the limits of a selection that are asked of every equilibrium."""
     limits = selection.limits
+    if limits.platform_frequency_Hz is not None:
+        yield _platform_frequency(limits.platform_frequency_Hz)
     if limits.stiffness_N_per_m is not None:
         yield Criterion(
             id="stiffness",
@@ -211,6 +216,47 @@ def _of_limits(selection: Selection) -> Iterator[Criterion]:
             limits=(low, high),
             kind="outside",
         )
+
+
+def _platform_frequency(limits: tuple[float, ...]) -> Criterion:
+    """Return what is asked of the platform's natural frequencies: a least one, or no band."""
+
+    def quantity(loaded: Loaded, statics: Statics) -> FloatArray:
+        body, density = loaded.moving_body, loaded.moving_density_kg_per_m
+        frequencies = platform_frequencies_Hz(statics, body, density)
+        if len(limits) == 1:
+            return frequencies[:, :1]
+        depth = np.nan_to_num(criterion.severity(frequencies), nan=0.0)
+        return np.take_along_axis(frequencies, depth.argmax(axis=1)[:, None], axis=1)
+
+    span = f"at least {limits[0]:g} Hz" if len(limits) == 1 else "outside {:g} to {:g} Hz"
+    criterion = Criterion(
+        id="platform_frequency",
+        title="Platform frequency",
+        formula="natural frequencies of the platform, cables of fixed length that follow it as if "
+        f"at rest, {span.format(*limits)}",
+        source=f"selection.limits.platform_frequency; {WHERE}",
+        unit="Hz",
+        quantity=quantity,
+        limits=limits,
+        kind="at_least" if len(limits) == 1 else "outside",
+        detail=_cables_of_their_own,
+    )
+    return criterion
+
+
+def _cables_of_their_own(loaded: Loaded, statics: Statics) -> str:
+    """Return how much lower than the platform's lowest frequency that with the cables can be."""
+    body, density = loaded.moving_body, loaded.moving_density_kg_per_m
+    lowest = float(platform_frequencies_Hz(statics, body, density).min())
+    string = float(string_frequency_Hz(loaded, statics).min())
+    bound = float(lowest_bound_Hz(statics, lowest, density).min())
+    if bound > (1.0 - _APART) * lowest:
+        return ""
+    return (
+        f"the cables swing by themselves from {string:.3g} Hz on, so that the lowest frequency of "
+        f"all lies between {bound:.3g} and {lowest:.3g} Hz"
+    )
 
 
 def _stiffness_N_per_m(_: Loaded, statics: Statics) -> FloatArray:

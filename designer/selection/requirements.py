@@ -236,7 +236,7 @@ def _requirement(
         cable=int(cables[column]) if len(quantity) == len(cables) > 1 else None,
         place=place,
         loaded=loaded,
-        remark="" if criterion.detail is None else criterion.detail(statics),
+        remark="" if criterion.detail is None else criterion.detail(loaded, statics),
     )
 
 

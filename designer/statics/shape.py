@@ -52,8 +52,10 @@ def string_frequency_Hz(loaded: Loaded, statics: Statics) -> FloatArray:
 
     sqrt(T / m) / (2 l), of the mean T of its end tensions and its free length l.
     """
-    cable, ice = loaded.bare[1], loaded.case.ice
-    around = 0.0 if ice is None else ice.linear_density_kg_per_m(cable.diameter_m)
-    mass = cable.linear_density_kg_per_m + around
+    return string_frequencies_Hz(statics, loaded.moving_density_kg_per_m)
+
+
+def string_frequencies_Hz(statics: Statics, density_kg_per_m: FloatArray | float) -> FloatArray:
+    """Return the same of cables of this mass per length (1 or n_cables,)."""
     mean = 0.5 * (statics.exit_tension_N + statics.platform_tension_N)
-    return np.asarray(np.sqrt(mean / mass) / (2.0 * statics.free_length_m))
+    return np.asarray(np.sqrt(mean / density_kg_per_m) / (2.0 * statics.free_length_m))

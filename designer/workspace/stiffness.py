@@ -12,7 +12,8 @@ from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.space import named_position
 from designer.model.workspace import Workspace
-from designer.statics.inverse import solve_sagging
+from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.modes import knows_inertia, platform_frequencies_Hz
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.workspace.demand import is_left_out
 from designer.workspace.refine import LIGHT, refine_over_branches
@@ -36,6 +37,11 @@ class StiffnessSurvey:
         former inf where the platform would not stay somewhere.
     softest_place, stiffest_place : array (n_coordinates,)
         Where [m, rad].
+    lowest_frequency_Hz : float or None
+        Least natural frequency of the platform, see `designer.statics.modes`; None where its
+        inertia is not known [Hz].
+    lowest_frequency_place : array (n_coordinates,) or None
+        Where [m, rad].
     """
 
     samples: int
@@ -44,6 +50,11 @@ class StiffnessSurvey:
     stiffest_m_per_N: float = field(metadata={"json": None})
     softest_place: FloatArray = field(metadata={"json": named_position})
     stiffest_place: FloatArray = field(metadata={"json": None})
+    lowest_frequency_Hz: float | None = None
+    lowest_frequency_place: FloatArray | None = field(
+        default=None,
+        metadata={"json": lambda at: {"lowest_frequency_pose": None if at is None else at[:3]}},
+    )
 
 
 def survey_stiffness(
@@ -53,13 +64,13 @@ def survey_stiffness(
 
     The search starts from `MOST_SAMPLES` of the workspace's samples.
     """
-    displacement = partial(displacement_demand, robot, workspace, cable)
+    displacement = partial(_motion_demand, robot, workspace, cable)
     thinned = workspace.thinned(MOST_SAMPLES)
     demand = displacement(thinned)
     counts = ~np.isneginf(demand[:, 0])
     if np.isneginf(demand[:, 1]).all():
         return None
-    softest, stiffest = refine_over_branches(workspace.space, displacement, thinned)
+    softest, stiffest, *slowest = refine_over_branches(workspace.space, displacement, thinned)
     return StiffnessSurvey(
         samples=int(counts.sum()),
         unstable=int(np.isposinf(demand[:, 0]).sum()),
@@ -67,6 +78,8 @@ def survey_stiffness(
         stiffest_m_per_N=-stiffest.demand,
         softest_place=softest.place,
         stiffest_place=stiffest.place,
+        lowest_frequency_Hz=-slowest[0].demand if slowest else None,
+        lowest_frequency_place=slowest[0].place if slowest else None,
     )
 
 
@@ -107,6 +120,28 @@ def displacement_demand(
     Inf and -inf where the platform would not stay, both -inf where the pose does not count.
     """
     statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
+    return _displacement(statics, workspace)
+
+
+def _motion_demand(
+    robot: Robot,
+    workspace: Workspace,
+    cable: Cable | Cables,
+    places: FloatArray,
+    *,
+    seeks_better: bool = True,
+) -> FloatArray:
+    """Return the same and, where the inertia is known, the lowest frequency, negated (n, 3)."""
+    statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
+    demand, body = _displacement(statics, workspace), robot.platform
+    if not knows_inertia(robot, body):
+        return demand
+    frequencies = platform_frequencies_Hz(statics, body, cable.linear_density_kg_per_m)
+    slowest = np.where(np.isneginf(demand[:, 0]), -np.inf, -frequencies[:, 0])
+    return np.column_stack([demand, slowest])
+
+
+def _displacement(statics: Statics, workspace: Workspace) -> FloatArray:
     counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
     displacement = largest_displacement_m_per_N(statics)
     stays = counts & np.isfinite(displacement)

@@ -148,6 +148,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("robot.platform.mass", "180 kg", "180 kg"),
         Entry("robot.platform.attachments", "default", "none"),
         Entry("robot.platform.centre_of_mass", "default", "[0, 0, 0] m"),
+        Entry("robot.platform.inertia", "default", "none"),
         Entry("robot.platform.hull", "default", "none"),
         Entry("robot.platform.wrench.force", "default", "[0, 0, 0] N"),
         Entry("robot.platform.wrench.moment", "default", "[0, 0, 0] N*m"),
@@ -188,7 +189,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("selection.max_distinct_products", "default", "none"),
         *(
             Entry(f"selection.limits.{name}", "default", "none")
-            for name in ("stiffness", "excitation", "drum_capacity")
+            for name in ("stiffness", "excitation", "drum_capacity", "platform_frequency")
         ),
         Entry("load_cases", "default", "none"),
         Entry("catalogues", "default", "none"),
@@ -267,10 +268,10 @@ def test_the_options_in_the_starter_config_are_true(study_of: StudyOf) -> None:
     text = re.sub(r"(?m)^ *(groups|max_distinct_products):.*\n", "", text)
     spare = re.compile(r"(?m)^ *tension_min: 500 N.*\n")
     with pytest.raises(InputError, match="leave no tension to choose"):
-        study_of(re.sub(r"(?m)^ *(attachments|centre_of_mass|hull|wrench):.*\n", "", text))
+        study_of(re.sub(r"(?m)^ *(attachments|centre_of_mass|hull|wrench|inertia):.*\n", "", text))
     text = spare.sub("", text)
-    for_a_body = re.compile(r"(?m)^ *(attachments|centre_of_mass|hull|wrench):.*\n")
-    assert len(for_a_body.findall(text)) == 4
+    for_a_body = re.compile(r"(?m)^ *(attachments|centre_of_mass|hull|wrench|inertia):.*\n")
+    assert len(for_a_body.findall(text)) == 5
     study = study_of(for_a_body.sub("", text))
     assert study.workspace is not None
     assert study.workspace.sampling == "grid"

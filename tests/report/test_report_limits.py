@@ -19,6 +19,7 @@ from designer.report.design.report import section as section_of
 from designer.selection.criteria import criteria_of
 from designer.selection.requirements import drum_of, evaluate, loads_of
 from designer.statics.inverse import solve_sagging
+from designer.statics.modes import platform_frequencies_Hz
 from designer.study import RopeLimits
 
 pytestmark = pytest.mark.slow
@@ -104,6 +105,46 @@ def test_a_cable_that_swings_within_the_band_does_not_hold(found: Analysis) -> N
     assert above.demand > low
 
 
+def test_the_lowest_frequency_is_that_of_the_worst_pose(found: Analysis) -> None:
+    rng = np.random.default_rng(8)
+    assert found.chosen is not None and found.qualities is not None
+    cable, robot = found.chosen.cable, found.study.robot
+    density = cable.linear_density_kg_per_m
+    asked = with_limits(found, RopeLimits(platform_frequency_Hz=(0.01,)))["platform_frequency"]
+    assert asked.holds and asked.place is not None and asked.cable is None
+    dense = Poses.at(rng.uniform([10.0, 4.0, 1.0], [20.0, 12.0, 7.0], (3000, 3)))
+    statics = solve_sagging(robot, dense, cable)
+    lowest = platform_frequencies_Hz(statics, robot.platform, density)[:, 0].min()
+    assert 0.98 * lowest <= asked.capacity <= lowest
+    survey = found.qualities.stiffness
+    assert survey is not None and survey.lowest_frequency_Hz is not None
+    assert survey.lowest_frequency_Hz == pytest.approx(asked.capacity, rel=1e-3)
+    above = with_limits(found, RopeLimits(platform_frequency_Hz=(2.0 * asked.capacity,)))
+    assert not above["platform_frequency"].holds
+    band = (0.9 * asked.capacity, 1.2 * asked.capacity)
+    within = with_limits(found, RopeLimits(platform_frequency_Hz=band))["platform_frequency"]
+    assert not within.holds and within.utilisation > 1.0
+    below = with_limits(found, RopeLimits(platform_frequency_Hz=(1e-3, 2e-3)))
+    assert below["platform_frequency"].holds
+
+
+def test_modes_stand_in_file_and_report(found: Analysis) -> None:
+    result = result_dict(found)
+    governing = found.governing
+    assert governing is not None
+    density = governing.case.loaded.moving_density_kg_per_m
+    at = governing.alone
+    expected = platform_frequencies_Hz(at, found.study.robot.platform, density)
+    assert [row["frequency_Hz"] for row in result["modes"]] == pytest.approx(expected.tolist())
+    assert all(np.linalg.norm(row["shape"]) == pytest.approx(1.0) for row in result["modes"])
+    assert result["modes_at"]["lowest_bound_Hz"] < expected[0]
+    assert result["workspace"]["stiffness"]["lowest_frequency_Hz"] <= expected[0] * 1.001
+    section = section_of(Drawings(found), "modes")
+    assert section is not None
+    rows = table(section, "Modes").groups[0].rows
+    assert [float(row.cells[0]) for row in rows] == pytest.approx(expected.tolist(), rel=0.01)
+
+
 def test_the_report_tells_what_is_checked_and_what_not(found: Analysis) -> None:
     section = section_of(Drawings(found), "checks")
     assert section is not None
@@ -125,4 +166,8 @@ def test_a_study_that_asks_for_every_check_lacks_none(solve: Callable[[str], Ana
     assert {"sheave_ratio", "clearance", "stiffness", "excitation", "drum_capacity"} <= done
     section = section_of(Drawings(analysis), "checks")
     assert section is not None
-    assert "Not evaluated: height over a floor (none is given)." in said(section)
+    lacking = said(section).partition("Not evaluated: ")[2].partition(".")[0]
+    assert lacking == (
+        "tension of winches (no largest is given), height over a floor (none is given) and "
+        "natural frequencies of the platform (no limit is given)"
+    )

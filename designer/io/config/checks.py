@@ -47,6 +47,7 @@ def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]
         each_cable_in_one_group,
         fields_go_together,
         load_cases_fit,
+        inertia_is_known,
         effects_are_known,
         columns_fit_the_robot,
         unknowns_are_known,
@@ -255,6 +256,30 @@ def _case_fits(
         problem = "the drag of the cables is not given"
         expected = "cable.drag_coefficient, such as 1.2; 0 for none"
         yield parts.fault(_CASES, problem, expected, index, "wind")
+
+
+_FREQUENCY = "selection.limits.platform_frequency"
+
+
+def inertia_is_known(parts: Parts) -> Iterator[Fault]:
+    """The inertia of a body is known in every load case where its frequencies have a limit."""
+    cases = [*_load_cases(parts)]
+    if parts.is_point_mass:
+        for index, case in cases:
+            if case.get("inertia") is not None:
+                problem, expected = "has no meaning for a point mass", "no inertia"
+                yield parts.fault(_CASES, problem, expected, index, "inertia")
+        return
+    if parts.raw(_FREQUENCY) is None:
+        return
+    if parts.raw("robot.platform.inertia") is None:
+        expected = "robot.platform.inertia: [xx, yy, zz]"
+        yield parts.fault(_FREQUENCY, "the inertia of the platform is not given", expected)
+        return
+    for index, case in cases:
+        if case.get("mass") is not None and case.get("inertia") is None:
+            problem = f"the inertia of the platform with this mass is not given, for {_FREQUENCY}"
+            yield parts.fault(_CASES, problem, "inertia beside it", index, "mass")
 
 
 def effects_are_known(parts: Parts) -> Iterator[Fault]:

@@ -60,6 +60,9 @@ class PlatformSection(Section):
     """Where the cable holds the platform, in the platform's own frame."""
     centre_of_mass: fields.Point = (0.0, 0.0, 0.0)
     """Where the platform's weight acts, in its own frame."""
+    inertia: fields.Inertias | None = config_field("Inertia of the platform")
+    """Moments of inertia about the centre of mass, along the axes of the platform's frame: xx, yy,
+    zz, and the entries xy, xz, yz of the matrix where they are not zero. For frequencies."""
     hull: Box | None = config_field("Hull of the platform")
     """Box, in the platform's own frame, that cables shall keep clear of."""
     wrench: WrenchSection = WrenchSection()
@@ -76,6 +79,7 @@ class PlatformSection(Section):
             None if self.hull is None else frozen_array(list(product(*self.hull))),
             self.wrench.wrench_N,
             drag_area_m2=None if self.drag is None else self.drag.area * self.drag.coefficient,
+            inertia_kg_m2=None if self.inertia is None else fields.symmetric(self.inertia),
         )
 
 
@@ -234,6 +238,9 @@ class LoadCaseSection(Section):
     """What the report calls the case."""
     mass: fields.Mass | None = config_field("Mass in load case")
     """Mass of the platform with its payload in this case, instead of the study's."""
+    inertia: fields.Inertias | None = config_field("Inertia in load case")
+    """Of the platform with its payload in this case, as the platform's; where the case changes the
+    mass and gives none, natural frequencies are not computed in it."""
     wrench: CaseWrenchSection | None = None
     """Constant load on the platform in this case, instead of the robot's."""
     dynamic_factor: fields.DynamicFactor = config_field("Dynamic factor in load case", 1.0)
@@ -265,6 +272,7 @@ class LoadCaseSection(Section):
         return LoadCase(
             name=self.name,
             mass_kg=self.mass,
+            inertia_kg_m2=None if self.inertia is None else fields.symmetric(self.inertia),
             wrench_N=None if self.wrench is None else self.wrench.wrench_N,
             dynamic_factor=self.dynamic_factor,
             acceleration_m_per_s2=self.acceleration,

@@ -207,6 +207,7 @@ def point_mass_has_no_body(parts: Parts) -> Iterator[Fault]:
         ("pose.quaternion", 1),  # the first number is 1 where nothing turns
         ("pose.euler.angles", 0),
         ("robot.platform.wrench.moment", 0),
+        ("robot.platform.inertia", 0),
     ):
         value = parts.read(path)
         if value is not None and any(value[first:]):

@@ -177,6 +177,18 @@ class LimitsSection(Section):
     """Band of frequencies in which no cable shall swing as a string."""
     drum_capacity: fields.DrumCapacity | None = None
     """Rope that a drum takes up, beside its dead turns."""
+    platform_frequency: fields.BandOrLeast | None = config_field("Frequency of the platform")
+    """Least natural frequency of the platform, or a band in which none of them may lie."""
+
+    def limits(self) -> RopeLimits:
+        """Return the limits."""
+        least = self.platform_frequency
+        return RopeLimits(
+            self.stiffness,
+            self.excitation,
+            self.drum_capacity,
+            (least,) if isinstance(least, float) else least,
+        )
 
 
 class SelectionSection(Section):
@@ -206,7 +218,7 @@ class SelectionSection(Section):
 
     def selection(self) -> Selection:
         """Return how a product is chosen."""
-        groups, limits = self.groups or {}, self.limits
+        groups = self.groups or {}
         return Selection(
             grades=None if self.grades == "all" else self.grades,
             safety_factor=self.safety_factor,
@@ -215,7 +227,7 @@ class SelectionSection(Section):
             sheave_diameter_m=self.sheave_diameter,
             groups=tuple(CableGroup(name, cables) for name, cables in groups.items()),
             max_distinct_products=self.max_distinct_products,
-            limits=RopeLimits(limits.stiffness, limits.excitation, limits.drum_capacity),
+            limits=self.limits.limits(),
         )
 
 

@@ -161,6 +161,17 @@ def stiffness(analysis: Analysis) -> Context | None:
     return {"survey": qualities.stiffness, "cable": qualities.cable.name}
 
 
+def modes(analysis: Analysis) -> Context | None:
+    """Natural frequencies and shapes; None where none are known."""
+    found = analysis.modes
+    if found is None:
+        return None
+    qualities = analysis.qualities
+    survey = None if qualities is None else qualities.stiffness
+    rows = [(m, m.shape[:3].tolist(), np.degrees(m.shape[3:]).tolist()) for m in found.modes]
+    return {"found": found, "rows": rows, "survey": survey}
+
+
 def clearance(analysis: Analysis) -> Context | None:
     """How near things come; None if the study asks for no clearance, or no cable holds."""
     qualities = analysis.qualities

@@ -22,6 +22,7 @@ SECTIONS: tuple[tuple[str, Callable[[Analysis], Context | None]], ...] = (
     ("selection", selection.selection),
     ("groups", contexts.groups),
     ("stiffness", contexts.stiffness),
+    ("modes", contexts.modes),
     ("clearance", contexts.clearance),
     ("workshop", contexts.fabrication),
     ("proof", contexts.proof),
