@@ -118,6 +118,7 @@ def _cable(study: Study, plugins: Plugins, bars: ProgressBars) -> tuple[Cable, s
         if selection is not None:
             strength_N *= selection.termination_efficiency / selection.safety_factor
         return on_machine.cable(strength_N), "the cable on the machine"
+    bars("no measurements.cable is declared: first the rope of the design")
     qualities = Analysis.begin(study, catalogue_of(study, plugins), reporter=bars).qualities
     if qualities is None or not isinstance(qualities.cable.cable, Cable):
         expected = "{linear_mass: …, axial_stiffness: …}: the design has no single rope"

@@ -277,6 +277,8 @@ def _bettered(diagnosis: Diagnosis) -> Iterator[Row]:
     for kind, *errors in diagnosis.errors:
         was, now = (kind.scale * error.heldout.value for error in errors)
         yield f"{kind.name} error", f"{was:.3g} → {now:.3g} {kind.unit} on unseen rows"
+    if diagnosis.not_held:
+        yield "  rows not held", escape(f"{diagnosis.not_held}; not counted")
     choices = (("cable before", diagnosis.design_before), ("after", diagnosis.design_after))
     for label, choice in choices:
         if choice is not None:

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.edge import steepness
 from designer.diagnosis.fit import HUBER, Fit, jacobian
 from designer.diagnosis.problem import Problem
 from designer.effects.effect import Effect, Parameter
@@ -85,12 +86,16 @@ class Calibration:
         Condition number of the scaled Jacobian.
     observability : float
         Borm and Menq's O1 of it.
+    edge_rows : tuple of int
+        Rows, as numbered in the file, at the edge of what the cables hold; see
+        `designer.diagnosis.edge`.
     """
 
     parameters: tuple[Calibrated, ...]
     covariance: FloatArray
     condition: float
     observability: float
+    edge_rows: tuple[int, ...] = ()
 
     @property
     def correlated(self) -> Iterator[Correlated]:
@@ -116,7 +121,8 @@ def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
     residual = problem.residual(fit.settings)
     # Huber's weights, as in the fit: outliers settle nothing.
     limit = HUBER * math.sqrt(fit.variance)
-    weight = np.sqrt(limit / np.maximum(np.abs(residual), limit))
+    doubt = steepness(problem, fit.settings)
+    weight = np.sqrt(limit / np.maximum(np.abs(residual), limit)) / doubt
     slopes = np.nan_to_num(weight[..., None] * jacobian(problem, effects, fit.vector) * typical)
     has_slope = slopes.any(axis=(0, 1))  # the time of a step has none
     slopes = slopes[..., has_slope]
@@ -143,6 +149,7 @@ def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
         covariance,
         told.condition,
         told.observability,
+        tuple(problem.measured.row_numbers[(doubt > 1.0).any(axis=1)].tolist()),
     )
 
 

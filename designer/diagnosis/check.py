@@ -111,11 +111,14 @@ class Check:
 
     @property
     def helps(self) -> bool:
-        """Whether less is left, in units of noise, than by any model without the effects."""
-        alternatives = [self.without, *([self.fitted] if self.fitted else [])]
-        return all(
-            self._size(self.declared) < self._size(alternative) for alternative in alternatives
-        )
+        """Whether less is left, in units of noise, than by any model without the effects.
+
+        Where nothing is declared but what is unknown, fitting that to these very rows is no rival.
+        """
+        fitted = {} if self.fitted is None else {s.effect.key for s in self.fitted.settings}
+        is_more = any(s.effect.key not in fitted for s in self.declared.settings)
+        alternatives = [self.without, *([self.fitted] if self.fitted and is_more else [])]
+        return all(self._betters(alternative) for alternative in alternatives)
 
     @property
     def is_positive(self) -> bool:
@@ -123,6 +126,9 @@ class Check:
         holds = self.declared.n_not_held <= self.without.n_not_held
         helps = self.helps or not self.declared.settings
         return holds and helps and not self.structure.is_present
+
+    def _betters(self, alternative: Model) -> bool:
+        return self._size(self.declared) < self._size(alternative)
 
     def _size(self, model: Model) -> float:
         left = [(kind.of(model), kind.of(self.noise)) for kind in KINDS if kind.of(model)]
@@ -146,8 +152,10 @@ class Check:
             yield "No pose was measured: each is estimated from the row's own readings."
         if not self.study.effects:
             yield "The config declares no effects."
-        elif not self.helps:
+        elif not self._betters(self.without):
             yield "The declared effects do not help on these data."
+        elif not self.helps:
+            yield "The declared effects leave no less than what is unknown, fitted to these rows."
         for key, reason in self.idle:
             yield f"{key} is declared and does not act here: {reason}."
         if self.declared.n_not_held:

@@ -226,13 +226,15 @@ def _stages(outcome: Outcome, problem: Problem, base: Fit, heldout: BoolArray) -
     """Errors as declared, then with the found effects one after the other."""
     effects, last = outcome.found, outcome.fit
     label = "as declared, unknowns fitted" if base.settings else "as declared"
-    sound = ~np.isnan(without_outliers(problem.residual(last.settings)))
-    stages = [stage(problem, label, base.settings, heldout, sound)]
-    model = base
+    models = [(label, base)]
     for count, effect in enumerate(effects, start=1):
-        model = last if count == len(effects) else outcome.searcher.fit(effects[:count], model)
-        stages.append(stage(problem, f"+ {effect.key}", model.settings, heldout, sound))
-    return tuple(stages)
+        is_last = count == len(effects)
+        model = last if is_last else outcome.searcher.fit(effects[:count], models[-1][1])
+        models.append((f"+ {effect.key}", model))
+    sound = ~np.isnan(without_outliers(problem.residual(last.settings)))
+    for _, model in models:
+        sound &= problem.holds(model.settings)[:, None]
+    return tuple(stage(problem, name, model.settings, heldout, sound) for name, model in models)
 
 
 def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tuple[Proposal, ...]:

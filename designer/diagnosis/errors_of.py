@@ -73,12 +73,15 @@ class Stage:
         All effects with their values.
     length_m, tension_N : Error or None
         None where nothing of the kind was measured.
+    n_not_held : int
+        Rows that this model cannot hold: they are in no error, of whatever stage.
     """
 
     label: str
     settings: tuple[Setting, ...] = field(metadata={"json": None})
     length_m: Error | None
     tension_N: Error | None
+    n_not_held: int = field(default=0, metadata={"json": "rows_not_held"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +107,8 @@ def stage(
     """
     residual = np.where(sound, problem.residual(settings), np.nan) * problem.sigma
     length_m, tension_N = np.hsplit(residual, 2)
-    return Stage(label, settings, _error(length_m, heldout), _error(tension_N, heldout))
+    errors = _error(length_m, heldout), _error(tension_N, heldout)
+    return Stage(label, settings, *errors, int((~problem.holds(settings)).sum()))
 
 
 def outliers_of(residual: FloatArray, row_numbers: IntArray) -> tuple[Outlier, ...]:

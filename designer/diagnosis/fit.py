@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.edge import steepness
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import score_covariances
 from designer.effects.effect import Effect, Setting, Values
@@ -138,8 +139,6 @@ def fit(
     fresh = _to_start(effects, start, anew=anew)
     # Evaluations from anywhere, and from near the end.
     turns = 80 if thorough or not start or (anew and fresh) else 12
-    # Relative: the final model is told, a trial is only compared with others.
-    tolerance = 1e-8 if thorough else 1e-5
     valleys = _starts(problem, effects, start, fresh)
     is_known = {effect.key for effect in fresh} <= {s.effect.key for s in start}
     near = [starting_vector(effects, start, {})] if is_known or not valleys else []
@@ -150,7 +149,7 @@ def fit(
             for group in (valleys, near)
             for vector in _promising(problem, effects, is_used, group)
         ]
-    fits = [_fit_from(problem, effects, is_used, vector, turns, tolerance) for vector in starts]
+    fits = [_fit_from(problem, effects, is_used, v, turns, thorough=thorough) for v in starts]
     return min(fits, key=lambda candidate: candidate.loss)
 
 
@@ -204,7 +203,8 @@ def _stepped(
     residual = problem.residual(settings_at(effects, vector))[is_used]
     loss, promise = float(huber(residual).sum()), np.inf
     for _ in range(8):
-        promised, step = _linear_step(residual, jacobian(problem, effects, vector)[is_used])
+        slopes = jacobian(problem, effects, vector, nearly=True)[is_used]
+        promised, step = _linear_step(residual, slopes)
         there = np.clip(vector + step, low, high)
         residual_there = problem.residual(settings_at(effects, there))[is_used]
         loss_there = float(huber(residual_there).sum())
@@ -219,37 +219,43 @@ def _stepped(
     return promise, loss, vector
 
 
-def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:
-    """Return the slopes of the residual (n_rows, 2 n_cables, n_parameters)."""
-    key = (problem.noise, *(effect.key for effect in effects), vector.tobytes())
-    every = slice(0, len(vector))
-    return problem.predict.remembered_slopes(key, lambda: _slopes(problem, effects, vector, every))
-
-
-def _slopes(
-    problem: Problem, effects: Sequence[Effect], vector: FloatArray, places: slice
+def jacobian(
+    problem: Problem, effects: Sequence[Effect], vector: FloatArray, *, nearly: bool = False
 ) -> FloatArray:
-    """Return the slopes of the residual in some of the parameters, by their places.
+    """Return the slopes of the residual (n_rows, 2 n_cables, n_parameters).
+
+    With ``nearly``, slopes that were taken near by will do; see `KeptSlopes`.
+    """
+    settings = settings_at(effects, vector)
+    problem.predicted(settings)  # which tells how far readings are trusted
+    trust = (problem.noise, problem.predict.distrust(settings, problem.noise))
+    return problem.predict.slopes.of(
+        settings, trust, lambda setting: _slopes(problem, settings, setting), nearly=nearly
+    )
+
+
+def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> FloatArray:
+    """Return the slopes of the residual in the parameters of one of the settings.
 
     A row that the model holds on one side only tells its slope there; one that it does not hold at
     all has none.
     """
     sigma, read = problem.sigma, problem.measured.readings
-    predicted = problem.predicted(settings_at(effects, vector)).stacked
-    parameters = [p for effect in effects for p in effect.parameters]
+    predicted = problem.predicted(settings).stacked
     slopes = []
-    for k, p in [*enumerate(parameters)][places]:
+    for p in own.effect.parameters:
+        value = own.values[p.name]
         # So short that one side will do, and far above the solver's residual.
-        step = 1e-3 * max(p.typical, 0.1 * abs(vector[k] - p.neutral))
+        step = 1e-3 * max(p.typical, 0.1 * abs(value - p.neutral))
         slope = np.full_like(read, np.nan)
-        for side in (step, -step):
+        for moved in (value + step, value - step):
             is_lost = np.isnan(slope) & ~np.isnan(read) & ~np.isnan(predicted)
             if not is_lost.any():
                 break
-            moved = vector.copy()
-            moved[k] += side
-            change = problem.predicted(settings_at(effects, moved)).stacked - predicted
-            slope = np.where(is_lost, -change / (moved[k] - vector[k]) / sigma, slope)
+            there = replace(own, values={**own.values, p.name: moved})
+            settings_there = tuple(there if s is own else s for s in settings)
+            change = problem.predicted(settings_there).stacked - predicted
+            slope = np.where(is_lost, -change / (moved - value) / sigma, slope)
         slopes.append(np.where(np.isnan(read), np.nan, np.nan_to_num(slope)))
     return np.stack(slopes, axis=-1)
 
@@ -290,14 +296,14 @@ def in_reach(
     others = [s.effect for s in present.settings]
     known = np.empty((int(is_used.sum()), 0))
     if others:
-        known = jacobian(problem, others, present.vector)[is_used]
+        known = jacobian(problem, others, present.vector, nearly=True)[is_used]
     losses = []
     start = _starts(problem, effects, present.settings, [effect])
     start = start or [starting_vector(effects, present.settings, {})]
     for vector in (starting_vector(effects, present.settings, effect.neutral), *start):
         settings = settings_at(effects, vector)
-        (own,) = (places for s, places in with_places(settings) if s.effect.key == effect.key)
-        slopes = _slopes(problem, effects, vector, own)[is_used]
+        (own,) = (s for s in settings if s.effect.key == effect.key)
+        slopes = _slopes(problem, settings, own)[is_used]
         residual = problem.residual(settings)[is_used]
         losses.append(_linear_step(residual, np.hstack([known, slopes]))[0])
     residual = problem.residual(present.settings)[is_used]
@@ -325,10 +331,13 @@ def _fit_from(
     mask: BoolArray,
     start: FloatArray,
     turns: int,
-    tolerance: float,
+    *,
+    thorough: bool,
 ) -> Fit:
     from scipy.optimize import least_squares
 
+    # Relative: the final model is told, a trial is only compared with others.
+    tolerance = 1e-8 if thorough else 1e-5
     parameters = [p for effect in effects for p in effect.parameters]
     low, high = np.array([p.bounds for p in parameters]).T
     inside = np.clip(start, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
@@ -336,7 +345,7 @@ def _fit_from(
         answer = least_squares(
             lambda v: problem.residual(settings_at(effects, v))[mask],
             inside,
-            jac=lambda v: jacobian(problem, effects, v)[mask],
+            jac=lambda v: jacobian(problem, effects, v, nearly=not thorough)[mask],
             bounds=(low, high),
             x_scale=[p.typical for p in parameters],
             loss="huber",
@@ -357,6 +366,9 @@ def _fit_from(
     limit = HUBER * np.sqrt(variance)
     residual[mask] = np.clip(answer.fun, -limit, limit)
     settings = settings_at(effects, answer.x)
+    if thorough:  # at the edge of what cables hold, a reading is not as sure as the sensor is
+        doubt = steepness(problem, settings)
+        slopes, residual = slopes / doubt[..., None], residual / doubt
     std, inflation, wald, covariance = _doubts(settings, slopes, residual, variance)
     return Fit(settings, answer.x, std, loss, count, inflation, wald, covariance)
 

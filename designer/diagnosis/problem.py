@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.kept_slopes import KeptSlopes
 from designer.diagnosis.statistics import MAD_TO_STD
 from designer.effects.effect import Readings, Setting, as_built
 from designer.effects.registry import SHIPPED, KnownEffects
@@ -20,7 +21,7 @@ from designer.model.machine import Machine
 from designer.model.measured_data import EVEN, Measured, Noise
 from designer.model.robot import Poses
 from designer.statics.internal import solve_internal
-from designer.statics.inverse import solve_sagging
+from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.taut import solve_taut
 from designer.statics.underactuated import imbalance, solve_underactuated
 
@@ -43,6 +44,11 @@ def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None
         statics = solve_sagging(machine.robot, poses, machine.cables, force, seeks_better=False)
     else:
         statics = solve_underactuated(machine.robot, poses, machine.cables, force)
+    return with_stiff_ends(machine, statics)
+
+
+def with_stiff_ends(machine: Machine, statics: Statics) -> Readings:
+    """Return lengths and winch-side tensions, less what bending stiffness takes off the former."""
     length, tension = statics.length_m, statics.exit_tension_N
     if machine.flexural_rigidity_N_m2:
         span = statics.geometry().horizontal_distance_m
@@ -112,22 +118,25 @@ class Guess:
         By how much more than noise lengths and tensions are off. As long as the model is off,
         readings are trusted to no more than that: else cables would be let slack to make up for an
         exit point in the wrong place.
+    near : Statics or None
+        The balance that it came from.
     """
 
     added: FloatArray
     distrust: tuple[float, float] = (1.0, 1.0)
+    near: Statics | None = None
 
     def after(
-        self, measured: Measured, true: Readings, displayed: Readings, noise: Noise, *, judges: bool
+        self, measured: Measured, near: Statics, displayed: Readings, noise: Noise, *, judges: bool
     ) -> Guess:
         """Return the guess that an answer leads to; with ``judges``, also of the distrust."""
-        added = np.nan_to_num(displayed.stacked - true.stacked)
+        added = np.nan_to_num(displayed.stacked - true_readings(near).stacked)
         if not judges:
-            return Guess(added, self.distrust)
+            return Guess(added, self.distrust, near)
         sigma = noise.of_channels(measured.length_m.shape[1])
         length, tension = np.hsplit(np.abs(measured.readings - displayed.stacked) / sigma, 2)
         distrust = (_distrust(length, self.distrust[0]), _distrust(tension, self.distrust[1]))
-        return Guess(added, distrust)
+        return Guess(added, distrust, near)
 
     def is_near(self, previous: Guess, noise: Noise) -> bool:
         """Tell whether another guess would give the same, to a small share of the noise."""
@@ -145,12 +154,12 @@ def _distrust(off: FloatArray, before: float) -> float:
     return float(2.0 ** np.floor(np.log2(max(size, 1.0))))
 
 
-def balanced_readings(
-    machine: Machine, measured: Measured, guess: Guess, noise: Noise
-) -> tuple[Readings, Readings]:
-    """Return true lengths and tensions, and those of cables with stiff ends."""
+def balanced(
+    machine: Machine, measured: Measured, guess: Guess, noise: Noise, near: Statics | None = None
+) -> Statics:
+    """Return the balance whose true lengths and tensions suit the readings; from one ``near``."""
     length_m, tension_N = np.hsplit(measured.readings - guess.added, 2)
-    statics = solve_internal(
+    return solve_internal(
         machine.robot,
         measured.poses,
         machine.cables,
@@ -158,11 +167,13 @@ def balanced_readings(
         tension_N,
         (noise.length_m * guess.distrust[0], noise.tension_N * guess.distrust[1]),
         added_force_N(machine, measured),
+        near,
     )
-    length, tension = statics.length_m, statics.exit_tension_N
-    span = statics.geometry().horizontal_distance_m
-    straightened = length - straightened_m(machine, tension, span)
-    return Readings(length, tension), Readings(straightened, tension)
+
+
+def true_readings(statics: Statics) -> Readings:
+    """Return unstrained lengths and winch-side tensions."""
+    return Readings(statics.length_m, statics.exit_tension_N)
 
 
 Kind = tuple[object, ...]
@@ -203,7 +214,7 @@ class Predictor:
     effects: KnownEffects = SHIPPED
     _guesses: dict[Kind, Guess] = field(init=False, default_factory=dict)
     _known: dict[Kind, tuple[Readings, Readings]] = field(init=False, default_factory=dict)
-    _slopes: dict[Kind, FloatArray] = field(init=False, default_factory=dict)
+    slopes: KeptSlopes = field(init=False, default_factory=KeptSlopes)
 
     def at(self, measured: Measured) -> Predictor:
         """Return the same model for other rows; for the same rows, one without a memory."""
@@ -283,15 +294,10 @@ class Predictor:
             self._known[key] = solve(settings, noise)
         return self._known[key]
 
-    def remembered_slopes(
-        self, key: tuple[object, ...], compute: Callable[[], FloatArray]
-    ) -> FloatArray:
-        """Return slopes that were computed lately: fits of parts of the rows start at one place."""
-        if key not in self._slopes:
-            if len(self._slopes) >= 8:  # those of the parts of one validation, and a few more
-                del self._slopes[next(iter(self._slopes))]
-            self._slopes[key] = compute()
-        return self._slopes[key]
+    def distrust(self, settings: Sequence[Setting], noise: Noise) -> tuple[float, float]:
+        """Return how much more than noise readings were off with these effects; see `Guess`."""
+        guess = self._guesses.get(kind_of(settings, noise))
+        return guess.distrust if guess else (1.0, 1.0)
 
     def _physical(self, settings: Sequence[Setting], _: Noise) -> tuple[Readings, Readings]:
         placed = self.placed(settings)
@@ -317,7 +323,6 @@ class Predictor:
         if before is not None and before.distrust == guess.distrust:
             return False
         self._known.clear()
-        self._slopes.clear()
         return True
 
     def _settled(
@@ -330,13 +335,19 @@ class Predictor:
         machine, measured = self.built(settings), self.placed(settings)
         nothing = Guess(np.zeros_like(measured.readings))
         guess = self._guesses.get(kind_of(settings, noise), nothing)
+        # Of two ways to hold a row, where there are two, the first judgement chooses.
+        near = None if judges else guess.near
+        if near is not None:  # what these values add to it
+            displayed = self._shown(with_stiff_ends(machine, near), settings)
+            guess = guess.after(measured, near, displayed, noise, judges=False)
         for _ in range(_MOST_TURNS):
-            true, straightened = balanced_readings(machine, measured, guess, noise)
-            displayed = self._shown(straightened, settings)
-            before, guess = guess, guess.after(measured, true, displayed, noise, judges=judges)
+            held = balanced(machine, measured, guess, noise, near)
+            near = None if judges else held
+            displayed = self._shown(with_stiff_ends(machine, held), settings)
+            before, guess = guess, guess.after(measured, held, displayed, noise, judges=judges)
             if guess.is_near(before, noise):
                 break
-        return guess, true, displayed
+        return guess, true_readings(held), displayed
 
     def _shown(self, readings: Readings, settings: Sequence[Setting]) -> Readings:
         placed, built = self.placed(settings), self.built(settings)
@@ -402,6 +413,11 @@ class Problem:
             # No other error is worse than a pose that the model cannot hold.
             residual[unheld] = (1e3 + 10.0 * np.abs(read) / sigma)[unheld]
         return residual
+
+    def holds(self, settings: Sequence[Setting]) -> BoolArray:
+        """Tell which rows (n_rows,) the model can hold, as far as they were read."""
+        unheld = np.isnan(self.predicted(settings).stacked) & ~np.isnan(self.measured.readings)
+        return np.asarray(~unheld.any(axis=1))
 
 
 def channel_names(n_cables: int) -> list[str]:

@@ -364,6 +364,16 @@ class Diagnosis:
             return DiagnosisVerdict.IMPLAUSIBLE
         return DiagnosisVerdict.SCATTER if self.is_scattered else DiagnosisVerdict.NOTHING
 
+    @property
+    def moves_poses(self) -> bool:
+        """Whether the platform was not where the log has it, by what was found or is unknown."""
+        return any(s.effect.on_poses is not None for s in self.final.settings)
+
+    @property
+    def not_held(self) -> str:
+        """How many rows are in no error, since a stage cannot hold them, in words."""
+        return ", ".join(f"{s.n_not_held} {s.label}" for s in self.stages if s.n_not_held)
+
     def has_no_rivals(self, finding: Finding) -> bool:
         """Tell whether all of the list were tried in place of a finding, and none is as good."""
         cut_short = f"rivals of {finding.effect.key}:"

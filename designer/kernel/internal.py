@@ -60,6 +60,7 @@ def solve_internal_poses(
     figures: CableFigures,
     read: FloatArray,
     noise: FloatArray,
+    start: FloatArray,
     pull: FloatArray,
     spread: float,
     scale: FloatArray,
@@ -76,8 +77,8 @@ def solve_internal_poses(
         Lengths [m] and tensions at the exit points [N] that were read; NaN where none was.
     noise : array (2,)
         Standard deviations σ_l [m] and σ_T [N].
-    pull : array (n_poses, n_cables)
-        Pulls p₀ to start from.
+    start, pull : array (n_poses, n_cables)
+        Pulls to start from, and p₀.
     spread : float
         By how much pulls may differ from p₀, s, as a logarithm.
     scale : array (degrees of freedom,)
@@ -101,7 +102,7 @@ def solve_internal_poses(
         for i in range(n):  # straight cables that pull so
             row = cables[i]
             for j in range(LANES):
-                p, chord = pull[lane[j], i], row[CHORD, j]
+                p, chord = start[lane[j], i], row[CHORD, j]
                 row[P, j] = p
                 row[L, j] = chord / (1.0 + kappa[i] * p * chord)
         for turn in range(_MOST_TURNS):

@@ -34,6 +34,7 @@ def solve_internal(
     tension_N: FloatArray,
     noise: tuple[float, float],
     force_N: FloatArray | None = None,
+    near: Statics | None = None,
 ) -> Statics:
     """Return the balance of poses (n_poses,) that comes nearest to what was read of them.
 
@@ -53,6 +54,8 @@ def solve_internal(
         Standard deviation of a length [m] and of a tension [N].
     force_N : array (n_poses, 3), optional
         Force on the platform beside its weight, base frame [N].
+    near : Statics, optional
+        A balance of these rows with nearly the same machine and readings, to start from.
 
     Returns
     -------
@@ -69,12 +72,14 @@ def solve_internal(
 
     def solve(run: PulleyRun) -> tuple[FloatArray, FloatArray, FloatArray]:
         chord_m = cable_geometry(robot, poses, run.exit_points_m).chord_m
+        pull = np.fmax(start_N / (cable.weight_N_per_m * chord_m), _LEAST_PULL)
         solve_internal_poses(
             upright_situation(robot, poses, run.exit_points_m, force_N),
             one_cable(robot, cable),
             plain(np.stack([length_m - run.wrap_m, tension_N], axis=-1)),
             plain(noise),
-            plain(np.fmax(start_N / (cable.weight_N_per_m * chord_m), _LEAST_PULL)),
+            plain(pull if near is None else _pull_near(near, pull)),
+            plain(pull),
             _SPREAD,
             plain(per_reach(robot)),
             out,
@@ -85,5 +90,15 @@ def solve_internal(
 
     forces, run, gap_rad = over_pulleys(robot, poses, solve)
     closes = (rest <= 1e-9) & (gap_rad <= SETTLED_RAD)
+    if near is not None and np.any(near.is_solved & ~closes):
+        return solve_internal(robot, poses, cable, length_m, tension_N, noise, force_N)
     verdict = np.where(closes, Verdict.SOLVED, Verdict.NOT_CONVERGED).astype(np.int8)
     return statics_with(robot, poses, cable, run, verdict, forces, force_N)
+
+
+def _pull_near(near: Statics, pull: FloatArray) -> FloatArray:
+    """Return the pulls of a balance (n_poses, n_cables); those given where it has none."""
+    across_m = near.geometry().horizontal_distance_m
+    with np.errstate(divide="ignore", invalid="ignore"):
+        own = near.force_x_N / (near.weight_N_per_m * across_m)
+    return np.where(np.isfinite(own) & (own > 0.0), own, pull)

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from designer.diagnosis.fit import jacobian
+from designer.diagnosis.kept_slopes import KeptSlopes
 from designer.effects.effect import Effect, Parameter, Size
 from designer.units import LENGTH
 
@@ -35,7 +36,7 @@ def test_a_row_tells_its_slope_from_the_side_on_which_it_is_held():
         sigma=np.array([0.5, 1.0]),
         measured=SimpleNamespace(readings=readings),
         predicted=predicted,
-        predict=SimpleNamespace(remembered_slopes=lambda key, compute: compute()),
+        predict=SimpleNamespace(slopes=KeptSlopes(), distrust=lambda settings, noise: (1.0, 1.0)),
     )
     slopes = jacobian(problem, [STRETCH], np.array([1.0]))
     # A residual is (measured - predicted) / noise; a row that is held on neither side has no slope.
