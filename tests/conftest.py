@@ -19,6 +19,7 @@ from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
 from designer.plugins import examine
 from designer.sizing.newton import size_poses
+from designer.statics.inverse import solve_massless
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -97,6 +98,7 @@ def compiled_by_one(request: pytest.FixtureRequest, fast_robot: Robot, steel: Ma
         four = replace(fast_robot, exit_points_m=np.vstack([fast_robot.exit_points_m, corner]))
         for robot in (fast_robot, four):
             size_poses(robot, Poses.at(everywhere), steel)
+        solve_massless(four, Poses.at(everywhere))
 
 
 @pytest.fixture
