@@ -154,8 +154,8 @@ def _as_unknown(effect: Effect, measurements: Measurements, machine: Machine) ->
         limit_m = min(_OF_FRAME * frame_size_m(machine) + _MORE_M, _AT_MOST_M)
     parameters = []
     for p in effect.parameters:
-        ends = (p.neutral + times * (end - p.neutral) for end in p.plausible)
-        low, high = ends if limit_m is None else (-limit_m, limit_m)
+        ends = (p.neutral, *(p.neutral + times * (end - p.neutral) for end in p.plausible))
+        low, high = (min(ends), max(ends)) if limit_m is None else (-limit_m, limit_m)
         parameters.append(replace(p, size=replace(p.size_here, plausible=(low, high))))
     return replace(effect, parameters=tuple(parameters))
 

@@ -174,7 +174,8 @@ def _starts(
         values_to_try = list(effect.starts)
         if effect.starts_from is not None:
             rest = tuple(s for s in rest_settings if s.effect.key in fitted)
-            values_to_try += effect.starts_from(problem.measured, problem.residual(rest))
+            residual = problem.residual(rest) * problem.sigma
+            values_to_try += effect.starts_from(problem.measured, residual)
         starts += [starting_vector(effects, rest_settings, values) for values in values_to_try]
     return starts
 

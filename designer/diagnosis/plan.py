@@ -267,8 +267,10 @@ def candidates(
     )
     case = case_of(study, measurements, measured)
     for name in measurements.unknown:
-        if not any(effect.is_among([name]) for effect in case.given):
+        named = [effect for effect in case.given if effect.is_among([name])]
+        if not named or any(effect.follows_rows for effect in named):
             why = dict(case.skipped).get(name, "no reading of such poses would show it")
+            why = "it depends on the way from pose to pose" if named else why
             problem = f"'{name}' cannot be planned for: {why}"
             expected = "what poses at rest can tell"
             raise InputError([study.source.fault("measurements.unknown", problem, expected)])

@@ -57,4 +57,5 @@ EFFECT = Effect(
     parameters=(Parameter("play_{cable}_m", LENGTH, _SIZE, is_optional=True),),
     on_readings=_change,
     needs=frozenset({"length", "reversals"}),
+    follows_rows=True,
 )

@@ -91,8 +91,10 @@ def _starts(
     best = best_wave(sound_m, off[is_sound] - np.mean(off[is_sound])) if off.size else None
     if best is None:
         return ()
-    cosine, sine, _ = best.parts
-    return ({"circumference_m": best.length_m, "phase_rad": float(np.arctan2(cosine, sine))},)
+    cosine, sine, _ = best.parts.tolist()
+    amplitude_m, phase = float(np.hypot(cosine, sine)), float(np.arctan2(cosine, sine))
+    start = {"amplitude_m": amplitude_m, "phase_rad": phase, "circumference_m": best.length_m}
+    return (start,)
 
 
 _ECCENTRICITY = Size(1e-3, bounds=(0.0, 0.1), plausible=(0.0, 0.03))

@@ -223,7 +223,8 @@ class Effect:
     starts : tuple of mapping
         Values to start a fit from, beside the typical ones.
     starts_from : callable or None
-        From the data and the residual without it (n_rows, 2 n_cables): values to start from.
+        From the data and the residual without it (n_rows, 2 n_cables), in m and N: values to start
+        from.
     looks : int
         In how many places it looks for a start: its gain by chance is that many times as probable.
     reaches_design : bool
@@ -231,6 +232,8 @@ class Effect:
     of_rope : bool
         Whether it is a property of the rope that is on the machine, which another rope would not
         have; see `designer.study.as_built_by`.
+    follows_rows : bool
+        Whether it depends on the way that the cables went from row to row.
     shifts_lengths : bool
         Whether it leaves only changes of the lengths to go by, not the lengths themselves.
     also_called : str
@@ -257,6 +260,7 @@ class Effect:
     looks: int = 1
     reaches_design: bool = False
     of_rope: bool = False
+    follows_rows: bool = False
     shifts_lengths: bool = False
     also_called: str = ""
     cable: int | None = None

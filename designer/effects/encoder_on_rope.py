@@ -45,4 +45,5 @@ EFFECT = Effect(
     on_readings=_change,
     needs=frozenset({"length"}),
     takes_machine=True,
+    follows_rows=True,
 )

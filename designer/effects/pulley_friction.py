@@ -28,4 +28,5 @@ EFFECT = Effect(
     parameters=(Parameter("coefficient", NUMBER, _SIZE),),
     on_readings=_change,
     needs=frozenset({"tension"}),
+    follows_rows=True,
 )

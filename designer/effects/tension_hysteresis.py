@@ -30,4 +30,5 @@ EFFECT = Effect(
     parameters=(Parameter("width_{cable}_N", FORCE, _size, is_optional=True),),
     on_readings=_change,
     needs=frozenset({"tension", "reversals"}),
+    follows_rows=True,
 )

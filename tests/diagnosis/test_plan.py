@@ -131,6 +131,7 @@ def test_table_for_the_controller(tmp_path, designer) -> None:
         (["--poses", "0"], "--poses: is 0 (expected a whole number"),
         (["--poses", "9999"], "--poses: is 9999 (expected at most"),
         (["--unknown", "anchor"], "--unknown: 'anchor' is not known"),
+        (["--unknown", "backlash"], "'backlash' cannot be planned for: it depends on the way"),
         (["--unknown", "thermal_expansion"], "'thermal_expansion' cannot be planned for: needs"),
         (["--length-noise", "2 kg"], "--length-noise: "),
         (["--check"], "--plan: has no use for --check"),

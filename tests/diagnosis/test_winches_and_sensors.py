@@ -93,6 +93,14 @@ def test_rows_that_never_turn_round_show_no_play(tmp_path: Path) -> None:
     assert skipped["pulley_inclination of cable 1"] == "needs declared pulleys"
 
 
+def test_what_is_unknown_may_be_anything_from_nothing_on(tmp_path: Path) -> None:
+    study = read_study(make(YARD3, rows=30, seed=8805).write(tmp_path))
+    assert study.measurements is not None
+    measurements = replace(study.measurements, unknown=("cell_at_platform",))
+    (given,) = case_of(study, measurements, read_measured(study)).given
+    assert all(given.parameters[0].is_plausible(share) for share in (0.0, 1.0))
+
+
 @pytest.mark.parametrize("round_m", [0.07, 0.4, 2.1])
 def test_the_best_of_thousands_of_waves_is_that_of_least_squares(round_m: float) -> None:
     rng = np.random.default_rng(8804)
