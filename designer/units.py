@@ -1,7 +1,7 @@
 """Quantities as people write them, such as ``4000 kg`` or ``200 GPa``, read into SI numbers.
 
 A text is taken apart by a small grammar of our own, so that nothing in it is ever evaluated, and
-only the names of units go to pint.
+only the names of units go to pint, of which most studies need none.
 """
 
 from __future__ import annotations
@@ -77,6 +77,23 @@ STIFFNESS = Dimension("a force per displacement", "N/m", "50 kN/m")
 INERTIA = Dimension("a moment of inertia", "kg*m^2", "300 kg*m^2")
 ACCELERATION = Dimension("an acceleration", "m/s^2", "0.5 m/s^2")
 
+SCALES = {
+    "m": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3, "in": 0.0254},
+    "m^2": {"mm^2": 1e-6},
+    "rad": {"rad": 1.0, "deg": 0.017453292519943295},
+    "kg": {"kg": 1.0, "t": 1e3},
+    "N": {"N": 1.0, "daN": 10.0, "kN": 1e3, "kgf": 9.80665, "lbf": 4.4482216152605005}
+    | {"short_ton_force": 8896.443230521003},
+    "N*m": {"N*m": 1.0, "kN*m": 1e3},
+    "Pa": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
+    "kg/m^3": {"kg/m^3": 1.0},
+    "kg/m": {"kg/m": 1.0, "g/m": 1e-3, "kg/km": 1e-3, "lb/ft": 1.488163943569554},
+    "1/K": {"/K": 1.0, "1/K": 1.0},
+    "m/s": {"m/s": 1.0},
+    "m/s^2": {"m/s^2": 1.0},
+}
+"""What pint makes of common units of each SI unit, so that most studies do without importing it."""
+
 
 class QuantityError(ValueError):
     """A value is no quantity of the wanted kind: what was found, and what was expected.
@@ -144,7 +161,7 @@ def in_SI(given: object) -> float:
         value, unit = parts
         if not unit:
             return value
-        return float(_registry().Quantity(value, _unit(unit)).to_root_units().magnitude)
+        return float(_registry().Quantity(value, _unit(unit)).to_base_units().magnitude)
     except _MisreadError as error:
         raise error.about(given, "a quantity") from None
 
@@ -210,7 +227,8 @@ def _read_text(text: str, dimension: Dimension) -> float:
     value, unit = float(number[0]), plain[number.end() :].strip()
     if unit.startswith(","):
         raise _MisreadError("has a decimal comma", instead="a decimal point")
-    return _to_SI(value, _unit(unit), dimension) if unit else value
+    scale = SCALES.get(dimension.unit, {}).get(unit) if unit else 1.0
+    return _to_SI(value, _unit(unit), dimension) if scale is None else value * scale
 
 
 def _to_SI(value: float, unit: Unit, dimension: Dimension) -> float:

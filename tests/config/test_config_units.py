@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pint import UnitRegistry
 
 from designer.units import (
     ANGLE,
@@ -20,13 +21,16 @@ from designer.units import (
     MASS,
     NUMBER,
     PER_TEMPERATURE,
+    SCALES,
     STRESS,
     Dimension,
     QuantityError,
     format_SI,
+    in_SI,
     read_quantity,
 )
 
+PINT = UnitRegistry()
 # How much of the SI unit one of each unit is, by definition (NIST SP 811, appendix B).
 FACTORS = [
     (LENGTH, "mm", 1e-3),
@@ -77,6 +81,21 @@ def test_a_value_written_in_another_unit_is_the_same_in_SI(
 def test_a_bare_number_is_SI(value: float) -> None:
     assert read_quantity(value, LENGTH) == value
     assert read_quantity(repr(value), LENGTH) == value
+
+
+@pytest.mark.parametrize(
+    ("SI", "unit"), [(SI, unit) for SI, scales in SCALES.items() for unit in scales]
+)
+def test_the_table_of_common_units_is_what_pint_makes_of_them(SI: str, unit: str) -> None:
+    for value in ("1", "12.7", "6.1e5"):
+        assert SCALES[SI][unit] * float(value) == PINT(f"{value} {unit}").to(SI).magnitude
+
+
+@pytest.mark.parametrize(("dimension", "unit", "factor"), FACTORS)
+def test_a_quantity_of_whatever_kind_is_as_large_as_of_its_own(
+    dimension: Dimension, unit: str, factor: float
+) -> None:
+    assert in_SI(f"2 {unit}") == pytest.approx(2.0 * factor, rel=1e-12)
 
 
 @pytest.mark.parametrize("text", ["2 mm", "2mm", " 2.0  mm ", "+2e0 mm", "0.002", "2 millimetre"])
