@@ -228,7 +228,8 @@ def _sound(
         problems.append(f"{offer.label}: register_effects() gave {kind}, not an Effect: left out")
         return None
     named = f"{offer.label}: effect {one_line(repr(item.id))}"
-    flaw = attempt(lambda: find_flaw(item), named, "cannot be built", problems)
+    is_own = offer.name in OWN_NAMES  # and then it is for our tests to find its flaws
+    flaw = "" if is_own else attempt(lambda: find_flaw(item), named, "cannot be built", problems)
     if flaw is None:  # reported by then
         return None
     if flaw:

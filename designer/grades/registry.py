@@ -16,7 +16,7 @@ from designer.grades.checks import find_flaws
 from designer.grades.files import id_fault, read_grades
 from designer.grades.grade import Grade
 from designer.grades.plain import Misfit
-from designer.plugins.find import Offer, Plugins, ask, find_plugins
+from designer.plugins.find import OWN_NAMES, Offer, Plugins, ask, find_plugins
 
 if TYPE_CHECKING:
     from designer.study import Study  # geometry, which a list of grades does not need
@@ -213,7 +213,7 @@ class _Shelf:
         complaints: list[str] = []
         before = len(self.grades)
         for item in offer.items:
-            for grade in _grades_in(item, complaints.append):
+            for grade in _grades_in(item, complaints.append, offer.name in OWN_NAMES):
                 complaints += self._add(replace(grade, origin=offer.name))
         lines = [f"{offer.label}: {one_line(complaint)}: left out" for complaint in complaints]
         self.problems += lines[:MOST_PROBLEMS_OF_A_SOURCE]
@@ -254,10 +254,13 @@ def _label(grade: Grade) -> str:
     return f"{grade.origin!r} ({grade.file})" if grade.file else repr(grade.origin)
 
 
-def _grades_in(item: object, complain: Callable[[str], None]) -> list[Grade]:
-    """Return the sound grades of one item that a plugin gave."""
+def _grades_in(item: object, complain: Callable[[str], None], is_own: bool) -> list[Grade]:
+    """Return the sound grades of one item that a plugin gave.
+
+    Our own were checked when they were read, or are by tests.
+    """
     if isinstance(item, Grade):
-        return _sound(item, complain)
+        return [item] if is_own else _sound(item, complain)
     if not isinstance(item, Path):
         complain(item.problem if isinstance(item, Misfit) else f"{item!r} is no grade")
         return []

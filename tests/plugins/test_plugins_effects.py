@@ -18,7 +18,7 @@ from designer.cli.schema import schema
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose_study
 from designer.effects.effect import Readings
-from designer.effects.load import load_effects
+from designer.effects.load import find_flaw, load_effects
 from designer.effects.registry import EFFECTS, SHIPPED, KnownEffects
 from designer.errors import EffectError, InputError
 from designer.io.config import read_study
@@ -86,6 +86,10 @@ def test_ours_come_in_by_the_door_in_their_order() -> None:
     assert find_plugins(with_plugins=False).problems == ()
     assert load_effects(find_plugins(with_plugins=False)) == SHIPPED
     assert SHIPPED.effects == EFFECTS
+
+
+def test_ours_which_are_not_examined_at_each_start_have_no_flaw() -> None:
+    assert [find_flaw(effect) for effect in EFFECTS] == [""] * len(EFFECTS)
 
 
 def test_every_file_with_an_effect_is_registered_under_its_name() -> None:
