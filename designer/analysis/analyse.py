@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import weakref
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -25,6 +27,7 @@ from designer.analysis.requirements import requirements_of
 from designer.analysis.sensitivities import Sensitivities, group_sensitivities
 from designer.analysis.uncertainty.uncertainty import UncertaintyAnalysis, uncertainty_of
 from designer.analysis.verification import SecondAnswer, second_answers
+from designer.documents.plain import lies_in
 from designer.effects.design import AsBuilt
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.model.requirement import Answer, Requirement, State, answer_of
@@ -78,6 +81,8 @@ class Analysis:
         with this value.
     reporter : Reporter
         Shows the progress of stages.
+    keep : sequence of str, optional
+        Paths of ``result.json`` that will be read; all if left out.
     """
 
     study: Study
@@ -85,6 +90,7 @@ class Analysis:
     provenance: Provenance
     folder: Path | None = None
     reporter: Reporter = field(default=SILENT, repr=False)
+    keep: Sequence[str] | None = None
 
     @classmethod
     def begin(
@@ -93,10 +99,11 @@ class Analysis:
         catalogue: Catalogue | None = None,
         folder: Path | None = None,
         reporter: Reporter = SILENT,
+        keep: Sequence[str] | None = None,
     ) -> Analysis:
         """Return the analysis of a study that can be answered; nothing is computed yet.
 
-        Parameters are those of `analyse`.
+        Parameters are those of `analyse`, and ``keep`` of the class.
 
         Raises
         ------
@@ -108,7 +115,11 @@ class Analysis:
         if catalogue is None:
             catalogue = load_catalogue(study.catalogues)
         catalogue.require_grades_of(study)
-        return cls(study, catalogue, Provenance.now(study), folder, reporter)
+        return cls(study, catalogue, Provenance.now(study), folder, reporter, keep)
+
+    def is_read(self, part: str) -> bool:
+        """Tell whether a part of ``result.json`` is read, such as ``workspace.servable``."""
+        return lies_in(part, self.keep)
 
     @cached_property
     def pose(self) -> PoseAnalysis | None:
@@ -137,14 +148,16 @@ class Analysis:
         study, built = self.study, self.built
         if study.workspace is None:
             return None
+        folder = self.folder or (self._scratch.folder if self.keep is None else None)
         with self.reporter.task("workspace", study.workspace.sample_count) as advance:
             return map_workspace(
                 built.robot,
                 study.workspace,
                 built.material(study.material),
-                file=(self.folder or self._scratch.folder) / "workspace.nc",
+                file=folder and folder / "workspace.nc",
                 attributes=_attributes(study, self.provenance),
                 progress=advance,
+                with_massless=self.is_read("workspace.massless") or self.is_read("findings"),
             )
 
     @cached_property
@@ -166,6 +179,7 @@ class Analysis:
             load_cases=self.study.load_cases,
             reporter=self.reporter,
             proof_s=0.0 if selection.groups else workspace.proof_s,
+            explains=self.keep is None or not all(map(_TELLS_NO_GRADES, self.keep)),
         )
 
     @cached_property
@@ -342,6 +356,11 @@ class Analysis:
         return self.selection.chosen if self.selection is not None else None
 
 
+_TELLS_NO_GRADES = re.compile(
+    r"(name|positive|answer|pose|workspace|load_cases"
+    r"|selection\.chosen(?!\.(continuous_diameter_m|outcome)$))(\.|$)"
+).match
+"""Whether a path of ``result.json`` is told by the chosen rope alone."""
 _STAGES = (
     *("pose", "workspace", "selection", "groups", "needs", "qualities", "requirements"),
     *("verification", "carries", "group_slopes", "servable", "uncertainty"),
@@ -382,6 +401,8 @@ def analyse(
         _ = analysis.pose.rest
     if analysis.ropes is not None:
         _ = analysis.ropes.worst, analysis.ropes.straight
+    if (surveyed := analysis.qualities) is not None:
+        _ = surveyed.stiffness, surveyed.interference, surveyed.hanging
     for case in analysis.cases:
         _ = case.most_used
     return analysis

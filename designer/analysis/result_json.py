@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Sequence
 
 from designer import __version__
 from designer.analysis.analyse import Analysis
@@ -11,34 +11,26 @@ from designer.analysis.modes import PlatformModes
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.selection_json import selection_dict
 from designer.analysis.uncertainty.uncertainty import uncertainty_dict
-from designer.documents.plain import RESULT_FORMAT, Json, plain, record
+from designer.documents.plain import RESULT_FORMAT, Json, lies_in, plain, record
 from designer.model.space import named_place
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.selection.cases import CaseResult
-from designer.selection.qualities import Qualities
 from designer.statics.cable_loss import Fate
 from designer.study import Study
 from designer.workspace.interference import Interference
-
-IsRead = Callable[[str], bool]
-"""Whether a path of ``result.json`` is asked for, such as ``workspace.servable``."""
 
 _OF_THE_CHOICE = ("stiffness", "interference", "hanging")
 """Of ``workspace``: told of the chosen rope, so that it has to be chosen."""
 _OF_CARRIES = ("sensitivities", "reserve", "sizes_beside", "first_failures")
 
 
-def _everything(_: str) -> bool:
-    return True
-
-
-def result_dict(analysis: Analysis, is_read: IsRead = _everything) -> Json:
+def result_dict(analysis: Analysis) -> Json:
     """Return everything that ``result.json`` holds; a part without results is None.
 
-    What changes no answer and takes its time is computed where ``is_read``, and empty elsewhere.
+    What changes no answer and takes its time is computed where it is read, and empty elsewhere.
     """
-    study, selection = analysis.study, analysis.selection
+    study, selection, is_read = analysis.study, analysis.selection, analysis.is_read
     carries = any(map(is_read, _OF_CARRIES))
     return plain(
         {
@@ -47,8 +39,8 @@ def result_dict(analysis: Analysis, is_read: IsRead = _everything) -> Json:
             "positive": analysis.is_positive,
             "answer": _answer(analysis),
             "inputs": {entry.field: entry.value_SI for entry in study.source.entries},
-            "pose": _pose(study, analysis.pose, is_read),
-            "workspace": _workspace(analysis, is_read),
+            "pose": _pose(study, analysis.pose, is_read("pose.rest")),
+            "workspace": _workspace(analysis),
             "selection": selection_dict(selection, analysis.groups),
             **load_cases_dict(analysis),
             **carries_dict(
@@ -74,27 +66,19 @@ def result_dict(analysis: Analysis, is_read: IsRead = _everything) -> Json:
     )
 
 
-def result_part(analysis: Analysis, keep: Iterable[str]) -> Json:
-    """Return as much of `result_dict` as the paths in ``keep`` take; no more is computed.
+def result_part(analysis: Analysis) -> Json:
+    """Return as much of `result_dict` as is read; no more is computed.
 
-    Where they take no answer there are only the name, the pose and the workspace.
+    Where that takes no answer there are only the name, the pose and the workspace.
     """
-    paths = tuple(keep)
-    is_read = _reader(paths)
-    if evaluates_answer(paths):
-        return result_dict(analysis, is_read)
+    if analysis.keep is None or evaluates_answer(analysis.keep):
+        return result_dict(analysis)
     part: Json = {"format": RESULT_FORMAT, "name": analysis.study.name}
-    if is_read("pose"):
-        part["pose"] = _pose(analysis.study, analysis.pose, is_read)
-    if is_read("workspace"):
-        part["workspace"] = _workspace(analysis, is_read)
+    if analysis.is_read("pose"):
+        part["pose"] = _pose(analysis.study, analysis.pose, analysis.is_read("pose.rest"))
+    if analysis.is_read("workspace"):
+        part["workspace"] = _workspace(analysis)
     return plain(part)
-
-
-def _reader(paths: Iterable[str]) -> IsRead:
-    """Return the test whether a part is read: it is one of ``paths``, or one lies in it."""
-    prefixes = [f"{path}." for path in paths]
-    return lambda part: any(path.startswith(f"{part}.") for path in prefixes)
 
 
 def evaluates_answer(keep: Iterable[str]) -> bool:
@@ -104,13 +88,13 @@ def evaluates_answer(keep: Iterable[str]) -> bool:
     return of_the_choice or not {path[0] for path in paths} <= {"pose", "workspace", "name"}
 
 
-def size_dict(study: Study, pose: PoseAnalysis, keep: Iterable[str] | None = None) -> Json:
+def size_dict(study: Study, pose: PoseAnalysis, keep: Sequence[str] | None = None) -> Json:
     """Return what ``designer size --json`` prints: the pose alone, under the same names.
 
-    Of ``keep``, the paths that will be read, as of `result_part`; all if left out.
+    Of ``keep``, the paths that will be read; all if left out.
     """
-    is_read = _everything if keep is None else _reader(keep)
-    pose_alone = {"pose": _pose(study, pose, is_read), "provenance": _origin(study)}
+    with_rest = lies_in("pose.rest", keep)
+    pose_alone = {"pose": _pose(study, pose, with_rest), "provenance": _origin(study)}
     return plain({"format": RESULT_FORMAT, "name": study.name, **pose_alone})
 
 
@@ -137,7 +121,7 @@ def _products(analysis: Analysis) -> Json:
     return {"products": products, "total_mass_kg": assignment.total_mass_kg}
 
 
-def _pose(study: Study, pose: PoseAnalysis | None, is_read: IsRead) -> Json | None:
+def _pose(study: Study, pose: PoseAnalysis | None, with_rest: bool) -> Json | None:
     if pose is None:
         return None
     statics, sizing = pose.sizing.statics, pose.sizing
@@ -174,20 +158,19 @@ def _pose(study: Study, pose: PoseAnalysis | None, is_read: IsRead) -> Json | No
             ],
         },
         "optimum": {"diameter_m": diameter},
-        "rest": pose.rest if is_read("pose.rest") else None,
+        "rest": pose.rest if with_rest else None,
     }
 
 
-def _workspace(analysis: Analysis, is_read: IsRead) -> Json | None:
+def _workspace(analysis: Analysis) -> Json | None:
     if analysis.workspace is None:
         return None
-    of_the_choice = any(is_read(f"workspace.{name}") for name in _OF_THE_CHOICE)
     return {
         **record(analysis.workspace),
         "orientations": _orientations(analysis.study),
         "section_m": analysis.section_m,
-        "servable": analysis.servable if is_read("workspace.servable") else None,
-        **_qualities(analysis.qualities if of_the_choice else None),
+        "servable": analysis.servable if analysis.is_read("workspace.servable") else None,
+        **_qualities(analysis),
     }
 
 
@@ -202,14 +185,14 @@ def _orientations(study: Study) -> Json | None:
     }
 
 
-def _qualities(qualities: Qualities | None) -> Json:
+def _qualities(analysis: Analysis) -> Json:
     """Return stiffness and clearances; None where they were not looked at."""
-    interference = None if qualities is None else qualities.interference
-    return {
-        "stiffness": None if qualities is None else qualities.stiffness,
-        "interference": None if interference is None else _interference(interference),
-        "hanging": None if qualities is None else qualities.hanging,
-    }
+    of_the_choice = dict.fromkeys(_OF_THE_CHOICE)
+    for name in _OF_THE_CHOICE:
+        if analysis.is_read(f"workspace.{name}") and analysis.qualities is not None:
+            of_the_choice[name] = getattr(analysis.qualities, name)
+    interference = of_the_choice["interference"]
+    return of_the_choice | {"interference": interference and _interference(interference)}
 
 
 def _modes(modes: PlatformModes | None) -> Json:

@@ -105,7 +105,8 @@ def _selected(study: Study, grades: Sequence[Grade]) -> _Selected:
     assert study.selection is not None
     built = as_built_by(study)
     built = replace(built, section_m=section_of_workspace(built, study.workspace, study.material))
-    worst = map_workspace(built.robot, study.workspace, built.material(study.material)).sagging
+    material = built.material(study.material)
+    worst = map_workspace(built.robot, study.workspace, material, with_massless=False).sagging
     chosen = best_product(
         built.robot,
         study.workspace,

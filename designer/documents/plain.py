@@ -12,7 +12,7 @@ import csv
 import io
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from typing import Any
@@ -54,6 +54,11 @@ def why_unreadable(value: object, newest: int, written_by: str = "") -> tuple[st
     needed = f"{written_by} or newer" if written_by else f"newer than {__version__}"
     problem = f"format {value} is newer than this cdpr-designer {__version__} reads"
     return problem, f"format 1 to {newest}; this file needs cdpr-designer {needed}"
+
+
+def lies_in(part: str, paths: Sequence[str] | None) -> bool:
+    """Tell whether a part of a file is one of some paths, or one lies in it; None are all."""
+    return paths is None or any(f"{path}.".startswith(f"{part}.") for path in paths)
 
 
 _STARTS_A_FORMULA = ("=", "+", "-", "@", "\t")

@@ -118,7 +118,8 @@ def _ranked(plan: OptimisationPlan, searched: Searched) -> list[Trial]:
 def _in_full(plan: OptimisationPlan, catalogue: Catalogue, trial: Trial) -> float | None:
     """Return the objective of a design that holds over all samples and between them; else None."""
     study = _study_of(plan, trial)
-    result = result_part(Analysis.begin(study, catalogue), ("positive", *plan.base.keep))
+    keep = ("positive", *plan.base.keep)
+    result = result_part(Analysis.begin(study, catalogue, keep=keep))
     holds = result["positive"] and not any(limit.is_broken_by(result) for limit in plan.limits)
     return plan.objective.value(result) if holds else None
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.effects.design import AsBuilt
 from designer.model.cable import Cable, Cables, Material
+from designer.model.robot import Robot
 from designer.model.workspace import Workspace
 from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate
@@ -48,26 +50,39 @@ class DesignCable:
         return np.array(turns or [np.nan])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Qualities:
-    """Stiffness and clearances over the workspace.
+    """Stiffness and clearances over the workspace, each when it is first read.
 
     Parameters
     ----------
+    robot, workspace : Robot, Workspace
+        As built, and where it goes.
     cable : DesignCable
         With which cables.
-    stiffness : StiffnessSurvey or None
-        None if no sample is held stably.
-    interference : Interference or None
-        None if the study asks for no clearance.
-    hanging : HangingCables
-        Cables far longer than their chord, or below the floor.
     """
 
+    robot: Robot
+    workspace: Workspace
     cable: DesignCable
-    stiffness: StiffnessSurvey | None
-    interference: Interference | None
-    hanging: HangingCables = field(default_factory=HangingCables)
+
+    @cached_property
+    def stiffness(self) -> StiffnessSurvey | None:
+        """None if no sample is held stably."""
+        return survey_stiffness(self.robot, self.workspace, self.cable.cable)
+
+    @cached_property
+    def interference(self) -> Interference | None:
+        """None if the study asks for no clearance."""
+        clearance_m = self.workspace.clearance_m
+        if clearance_m is None:
+            return None
+        return survey(self.robot, self.workspace, self.cable.cable, clearance_m)
+
+    @cached_property
+    def hanging(self) -> HangingCables:
+        """Cables far longer than their chord, or below the floor."""
+        return survey_hanging(self.robot, self.workspace, self.cable.cable)
 
 
 def design_cable(
@@ -99,16 +114,9 @@ def qualities_of(
     material: Material,
     needs: Sequence[CaseNeed],
 ) -> Qualities | None:
-    """Survey the workspace with the cables of the design; None where no cable holds everywhere.
+    """Return what the cables of the design make of it; None where no cable holds everywhere.
 
     ``needs`` is what load cases need of the configured family.
     """
     cable = design_cable(family_map, assignment, built.material(material), needs)
-    if cable is None:
-        return None
-    interference = None
-    if workspace.clearance_m is not None:
-        interference = survey(built.robot, workspace, cable.cable, workspace.clearance_m)
-    stiffness = survey_stiffness(built.robot, workspace, cable.cable)
-    hanging = survey_hanging(built.robot, workspace, cable.cable)
-    return Qualities(cable, stiffness, interference, hanging)
+    return None if cable is None else Qualities(built.robot, workspace, cable)

@@ -50,7 +50,7 @@ from designer.selection.screen import Screen
 from designer.selection.usable import Usable, serves, usable
 from designer.selection.verify import Verification, verify_sizes
 from designer.statics.sizes import is_quick
-from designer.study import Objective, Selection
+from designer.study import Selection
 from designer.workspace.stiffness import smallest_stiffness_N_per_m
 
 _FEW = 16
@@ -67,36 +67,38 @@ def select(
     load_cases: Sequence[LoadCase] = (),
     reporter: Reporter | None = None,
     proof_s: float = 0.0,
+    explains: bool = True,
 ) -> SelectionResult:
     """Choose the best product among the grades that the study allows.
 
     ``grades`` is the whole catalogue, which ``selection.grades`` narrows; ``built`` tells by how
     much cables on this machine differ from their data sheet. A product holds that holds in every
     load case; without any it is the static one. It is tried for ``proof_s`` to prove that the best
-    holds in all poses [s].
+    holds in all poses [s]. Without ``explains`` it is not told what a grade comes to (its optimum),
+    why nothing is chosen and what would hold then, nor what share the sizes serve.
     """
     allowed = [g for g in grades if is_allowed(g, selection.grades)]
     cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
     run = _SelectionRun(
-        cases, selection, built or AsBuilt(robot), allowed, reporter or SILENT, proof_s
+        cases, selection, built or AsBuilt(robot), allowed, reporter or SILENT, proof_s, explains
     )
     outcomes, not_tried = run.outcomes(allowed)
     if selection.grades is None:
         not_tried += [NotTried(g, None, g.why_only_by_name) for g in grades if g.why_only_by_name]
     chosen = next((c for o in outcomes for c in o.candidates if c.standing == "chosen"), None)
     alternatives: list[GradeOutcome] = []
-    if chosen is None:
+    if chosen is None and explains:
         not_allowed = [g for g in grades if g not in allowed and not g.why_only_by_name]
         alternatives = run.outcomes(not_allowed, only_fitting=True)[0] if not_allowed else []
     return SelectionResult(
         outcomes=tuple(outcomes),
         chosen=chosen,
-        reason=None if chosen else _reason(outcomes, not_tried, selection.objectives[0]),
+        reason=_reason(outcomes, not_tried, selection) if explains and chosen is None else None,
         alternatives=tuple(alternatives),
         objectives=selection.objectives,
         currency=run.currency,
         not_tried=tuple(not_tried),
-        usable=_usable(robot, workspace, outcomes, chosen),
+        usable=_usable(robot, workspace, outcomes, chosen) if explains else None,
         proof=None if chosen is None else run.proofs.get(chosen),
     )
 
@@ -149,6 +151,7 @@ class _SelectionRun:
     allowed: Sequence[Grade]  # By the study
     reporter: Reporter = SILENT
     proof_s: float = 0.0
+    explains: bool = True
     proofs: dict[Candidate, Proof] = field(default_factory=dict)
 
     @cached_property
@@ -193,6 +196,11 @@ class _SelectionRun:
         self, grades: Sequence[tuple[Grade, Sequence[Candidate]]]
     ) -> list[ContinuousOptimum]:
         """Return the continuous optimum of each grade with candidates."""
+        allowance, of_grades = Allowance.of(self.selection), [grade for grade, _ in grades]
+        if not self.explains:
+            unbent = replace(allowance, sheave_diameter_m=None)
+            families = [unbent.family(g, g.thickest.diameter_m) for g in of_grades]
+            return [ContinuousOptimum(family, math.nan) for family in families]
         workspace = self.cases.workspace
         doubtful = [
             next(
@@ -206,8 +214,6 @@ class _SelectionRun:
             )
             for _, candidates in grades
         ]
-        allowance = Allowance.of(self.selection)
-        of_grades = [grade for grade, _ in grades]
         return continuous_optima(workspace, of_grades, allowance, self.built, doubtful)
 
     def choose(self, candidates: Sequence[Candidate]) -> tuple[list[Candidate], set[Candidate]]:
@@ -385,14 +391,15 @@ def _usable(
 
 
 def _reason(
-    outcomes: Sequence[GradeOutcome], not_tried: Sequence[NotTried], decides: Objective
+    outcomes: Sequence[GradeOutcome], not_tried: Sequence[NotTried], selection: Selection
 ) -> str:
     if not outcomes and not_tried:
         return f"no size could be tried: {not_tried[0].reason}"
     if not outcomes:
         return "the catalogue has none of the grades that the study names"
     if any(c.standing == "not_comparable" for o in outcomes for c in o.candidates):
-        return f"some ropes hold, but the {MEANINGS[decides].word} of none of them is known"
+        word = MEANINGS[selection.objectives[0]].word
+        return f"some ropes hold, but the {word} of none of them is known"
     if all(outcome.outcome == "no_finite_cable" for outcome in outcomes):
         return "no section of any grade holds the whole workspace"
     thin = [outcome for outcome in outcomes if outcome.outcome == "too_thin"]

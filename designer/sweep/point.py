@@ -62,7 +62,7 @@ class Base:
         # A proof may take its whole budget for each of thousands of studies.
         if "proof" not in parts and study.workspace is not None:
             study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
-        return result_part(Analysis.begin(study, self.catalogue(study)), self.keep)
+        return result_part(Analysis.begin(study, self.catalogue(study), keep=self.keep))
 
 
 @cache

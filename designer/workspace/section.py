@@ -127,7 +127,7 @@ def section_of_workspace(built: AsBuilt, workspace: Workspace, material: Materia
         return None
 
     def worst_of(family: Material) -> Worst:
-        workspace_map = map_workspace(built.robot, workspace, family)
+        workspace_map = map_workspace(built.robot, workspace, family, with_massless=False)
         if workspace_map.sagging is not None:
             return Worst(workspace_map.sagging.place, workspace_map.sagging.diameter_m)
         pose = workspace_map.infeasible_pose

@@ -41,6 +41,7 @@ def map_workspace(
     file: Path | None = None,
     attributes: Mapping[str, Any] = MappingProxyType({}),
     progress: Advance = lambda _: None,
+    with_massless: bool = True,
 ) -> WorkspaceMap:
     """Size every sample of the workspace, and find the worst pose of the region.
 
@@ -53,6 +54,8 @@ def map_workspace(
         Provenance that is stored in the file.
     progress : callable
         Called after each chunk.
+    with_massless : bool
+        Whether to search for the worst pose of straight weightless cables as well.
     """
     gathered = _Gathered(workspace)
     kept = sweep_file(file, robot.n_cables, attributes) if file else nullcontext(lambda *_: None)
@@ -62,7 +65,7 @@ def map_workspace(
             gathered.add(places, sizing)
             store(places, sizing)
             progress(len(positions))
-    return _summarise(robot, workspace, material, gathered, file)
+    return _summarise(robot, workspace, material, gathered, file, with_massless)
 
 
 class _Gathered:
@@ -107,7 +110,12 @@ class _Gathered:
 
 
 def _summarise(
-    robot: Robot, workspace: Workspace, material: Material, gathered: _Gathered, file: Path | None
+    robot: Robot,
+    workspace: Workspace,
+    material: Material,
+    gathered: _Gathered,
+    file: Path | None,
+    with_massless: bool,
 ) -> WorkspaceMap:
     example = gathered.infeasible_example
     sagging = massless = None
@@ -123,7 +131,7 @@ def _summarise(
         else:
             example = worst.place
     starts = gathered.massless_starts.places
-    if len(starts):
+    if with_massless and len(starts):
         demand = partial(massless_demand, robot, material, workspace.hangs_below)
         (worst,) = refine_over_branches(workspace.space, demand, starts)
         if np.isfinite(worst.demand):

@@ -27,7 +27,7 @@ from designer.errors import InputError, OutputError
 from designer.sweep import run as running
 from designer.sweep import store as stores
 from designer.sweep.plan import SweepPlan, read_sweep
-from designer.sweep.point import Base, why_negative
+from designer.sweep.point import Base, value_at, why_negative
 from designer.sweep.run import run
 from designer.sweep.store import Store, opened, read_store
 
@@ -135,6 +135,25 @@ def test_what_is_slow_and_changes_no_answer_is_solved_where_it_is_kept(tmp_path:
         base = Base(document, keep, with_plugins=False)
         result = base.result(base.study())
         assert (result["pose"]["rest"] is not None) is bool(result["verification"]) is solved
+
+
+@pytest.mark.parametrize("top", ["7", pytest.param("10.5", marks=pytest.mark.slow)])
+def test_what_is_kept_is_what_the_whole_result_holds(top: str, tmp_path: Path) -> None:
+    """What is left out because nothing kept takes it changes nothing that is kept."""
+    region = REGION.replace("z: [1, 7]", f"z: [1, {top}]")
+    region = region.replace("{}", "{grades: [unirope-7x19-galvanised]}")
+    (tmp_path / "crane.yaml").write_text(STUDY + region)
+    document = read_document(tmp_path / "crane.yaml")
+    whole = designer.analyse(designer.read_study(tmp_path / "crane.yaml")).to_dict()
+    for kept in (
+        ("selection.chosen.utilisation", "answer.verdict", "positive"),
+        ("selection.chosen.continuous_diameter_m", "selection.chosen.outcome"),
+        ("selection.reason", "selection.grades.0.outcome", "selection.usable.0.fraction"),
+        ("workspace.massless.diameter_m", "workspace.stiffness.samples", "checks.1.state"),
+    ):
+        base = Base(document, kept, with_plugins=False)
+        result = base.result(base.study())
+        assert [value_at(result, path) for path in kept] == [value_at(whole, path) for path in kept]
 
 
 def test_a_workspace_that_none_holds_is_why_there_is_nothing() -> None:
