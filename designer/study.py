@@ -15,6 +15,7 @@ from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED, KnownEffects
 from designer.errors import Fault, InputError
 from designer.model.cable import Material
+from designer.model.duty import RUNNING_ROPE, SOURCE, DutyClass
 from designer.model.load_case import EACH, LoadCase
 from designer.model.machine import TEMPERATE, Machine, Surroundings
 from designer.model.measurements import Measurements
@@ -59,6 +60,10 @@ class RopeLimits:
                 low = end
 
 
+_SAFETY_FACTOR = 5.0
+"""Where a study gives neither a factor nor a duty class."""
+
+
 @dataclass(frozen=True, slots=True)
 class CableGroup:
     """Cables that get the same product: a name, and their numbers from 1."""
@@ -95,19 +100,28 @@ class Selection:
         How many products the groups may have between them; None for one each.
     limits : RopeLimits
         What the chosen rope is checked against beyond its strength.
+    duty_class : str
+        Mechanism group, which gives the safety factor of running ropes; ``none`` for none.
     """
 
     grades: tuple[str, ...] | None = None
-    safety_factor: checked.Factor = 5.0
+    safety_factor: checked.Factor = _SAFETY_FACTOR
     objectives: tuple[Objective, ...] = ("mass", "drum_diameter", "max_tension")
     termination_efficiency: checked.Efficiency = 1.0
     sheave_diameter_m: checked.Positive | None = None
     groups: tuple[CableGroup, ...] = ()
     max_distinct_products: checked.Count | None = None
     limits: RopeLimits = field(default_factory=RopeLimits)
+    duty_class: DutyClass = "none"
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
+        if self.duty_class != "none":
+            factor = RUNNING_ROPE[self.duty_class]
+            if self.safety_factor not in (_SAFETY_FACTOR, factor):
+                given = f"safety_factor {self.safety_factor:g}"
+                raise ValueError(f"{given} contradicts duty_class {self.duty_class}")
+            object.__setattr__(self, "safety_factor", factor)
         if not self.objectives:
             raise ValueError("objectives must name one at least")
         if isinstance(self.grades, str):
@@ -121,11 +135,19 @@ class Selection:
                     raise ValueError(f"cable {cable} is in group '{first[cable]}' already")
                 first[cable] = group.name
 
+    @property
+    def factor_source(self) -> str:
+        """Where the safety factor is from."""
+        if self.duty_class == "none":
+            return "S as the study gives it"
+        return f"S of duty class {self.duty_class}: {SOURCE}"
+
     def under(self, case: LoadCase) -> Selection:
         """Return the same with the safety factor and the efficiency of a load case."""
         return replace(
             self,
             safety_factor=case.safety_factor or self.safety_factor,
+            duty_class="none" if case.safety_factor else self.duty_class,
             termination_efficiency=case.termination_efficiency or self.termination_efficiency,
         )
 

@@ -17,22 +17,22 @@ GRAVITY = 9.81
 
 @dataclass(frozen=True)
 class Chain:
-    """A cable: end points (3,), unstrained length, EA, mass and weight per length."""
+    """A cable: end points (3,), unstrained length, EA, mass and load (3,) per length."""
 
     start_m: np.ndarray
     end_m: np.ndarray
     length_m: float
     axial_stiffness_N: float
     linear_density: float
-    weight_N_per_m: float
+    load_N_per_m: np.ndarray
     force_N: np.ndarray  # first guess of the force on it at its end, (3,)
     elements: int = 40
 
     def forces(self, end_force_N: np.ndarray) -> np.ndarray:
         """Force in each element, from the exit point down, toward the end (elements, 3)."""
         n = self.elements
-        below = (n - 1 - np.arange(n) + 0.5) * self.weight_N_per_m * self.length_m / n
-        return end_force_N - np.outer(below, [0.0, 0.0, 1.0])
+        below = (n - 1 - np.arange(n) + 0.5) * self.length_m / n
+        return end_force_N + np.outer(below, self.load_N_per_m)
 
     def spans(self, end_force_N: np.ndarray) -> np.ndarray:
         force = self.forces(end_force_N)
@@ -79,20 +79,20 @@ def cross(v: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Body:
-    """Mass, inertia about the centre of mass and its lever, levers (n, 3), world axes; weight."""
+    """Mass, inertia about the centre of mass and its lever, levers (n, 3), force there; world."""
 
     mass_kg: float
     inertia: np.ndarray
     arm_m: np.ndarray
     levers_m: np.ndarray
-    weight_N: float
+    centre_force_N: np.ndarray
     turns: bool = True
 
     def matrices(self, end_forces_N: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness of forces that stay as the body turns, by the second variation, and mass."""
         K, M, c = np.zeros((6, 6)), np.zeros((6, 6)), self.arm_m
         pulls = [*zip(-end_forces_N, self.levers_m, strict=True)]
-        for f, b in (*pulls, (np.array([0.0, 0.0, -self.weight_N]), c)):
+        for f, b in (*pulls, (self.centre_force_N, c)):
             K[3:, 3:] += (f @ b) * np.eye(3) - 0.5 * (np.outer(f, b) + np.outer(b, f))
         T = np.hstack([np.eye(3), -cross(c)])
         M += self.mass_kg * T.T @ T

@@ -180,7 +180,7 @@ def _of_groups(selection: Selection, assignment: Assignment) -> Iterator[Require
             id="breaking_load",
             title=f"Breaking load, {group.name}",
             formula=f"T ≤ η F / S; S = {selection.safety_factor:g}",
-            source="Noble Denton 0027/ND, 7.6 to 7.8; S as the study gives it",
+            source=f"Noble Denton 0027/ND, 7.6 to 7.8; {selection.factor_source}",
             state=State.HOLDS if used <= 1.0 else State.FAILS,
             load_case=STATIC.name,
             demand=float(used) * allowable_N,

@@ -26,6 +26,7 @@ from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.selection.cases import CaseResult, steepest, worst_of_each
 from designer.selection.criteria import ROUNDING, WHERE, Criterion
+from designer.selection.rope_class import SOURCE, least_sheave_ratio
 from designer.statics.cable_loss import Fate
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
@@ -266,13 +267,14 @@ def strength_of(cases: Sequence[CaseResult], selection: Selection) -> Iterator[R
 
 
 def _breaking_load(result: CaseResult, selection: Selection) -> Requirement:
-    factor, verification = selection.under(result.case).safety_factor, result.verification
+    asked, verification = selection.under(result.case), result.verification
+    factor = asked.safety_factor
     is_known = verification.is_refined or not verification.holds
     return Requirement(
         id="breaking_load",
         title="Breaking load",
         formula=f"T ≤ η F / S; η the smaller of end fitting and bending, S = {factor:g}",
-        source="Noble Denton 0027/ND, 7.6 to 7.8; S as the study gives it",
+        source=f"Noble Denton 0027/ND, 7.6 to 7.8; {asked.factor_source}",
         state=State.OPEN if not is_known else State.HOLDS if verification.holds else State.FAILS,
         load_case=result.case.name,
         demand=verification.max_tension_N,
@@ -317,21 +319,29 @@ def _why_not_held(result: CaseResult) -> tuple[State, str]:
 
 
 def sheave_ratio_of(grade: Grade, size: Size, selection: Selection) -> Iterator[Requirement]:
-    """Yield the bending ratio, where the study has a sheave and the maker gives a least ratio."""
+    """Yield the bending ratio, where the study has a sheave and a least ratio is known.
+
+    That is the maker's or, with a duty class, that of the rope's class where it is larger.
+    """
     ratio = grade.sheave_ratio
-    if selection.sheave_diameter_m is None or ratio is None or ratio.minimum is None:
+    least, source = (0.0, "") if ratio is None else (ratio.minimum, f"table of {grade.id}")
+    by_class = None if selection.duty_class == "none" else least_sheave_ratio(grade)
+    if by_class is not None and by_class[0] > least:
+        least, source = by_class[0], f"{SOURCE}: {by_class[1]}"
+    if selection.sheave_diameter_m is None or least == 0.0:
         return
     bending_ratio = selection.sheave_diameter_m / size.diameter_m
     yield Requirement(
         id="sheave_ratio",
         title="Sheave",
         formula="D / d ≥ the least ratio of the construction",
-        source=f"table of {grade.id}",
-        state=State.HOLDS if bending_ratio >= ratio.minimum else State.FAILS,
+        source=source,
+        state=State.HOLDS if bending_ratio >= least else State.FAILS,
         load_case="all",
-        demand=ratio.minimum,
+        demand=least,
         capacity=bending_ratio,
-        utilisation=ratio.minimum / bending_ratio,
+        utilisation=least / bending_ratio,
+        remark="" if ratio is not None and least == ratio.minimum else source,
     )
 
 

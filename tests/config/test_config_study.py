@@ -182,6 +182,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("workspace.orientation_range", "default", "none"),
         Entry("selection.grades", "default", "all"),
         Entry("selection.safety_factor", "4", "4"),
+        Entry("selection.duty_class", "default", "none"),
         Entry("selection.objectives", "default", "[mass, drum_diameter, max_tension]"),
         Entry("selection.termination_efficiency", "default", "1"),
         Entry("selection.sheave_diameter", "default", "none"),

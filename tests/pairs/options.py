@@ -228,6 +228,17 @@ def _groups(study: Text) -> None:
     study["selection"]["objectives"] = ["mass"]
 
 
+def _frequency(study: Text) -> None:
+    _set("selection.limits.platform_frequency", 0.05)(study)
+    if "attachments" in study["robot"]["platform"]:
+        study["robot"]["platform"]["inertia"] = [60.0, 70.0, 90.0]
+
+
+def _duty_class(study: Text) -> None:
+    del study["selection"]["safety_factor"]
+    study["selection"]["duty_class"] = "M5"
+
+
 def _turns(study: Text) -> None:
     study["workspace"]["orientations"] = [[0.0, 0.0, 0.0], [0.0, 0.05, 0.0]]
 
@@ -349,6 +360,8 @@ OPTIONS: tuple[Option, ...] = (
         "excitation", "band of excitation", ALL, _set("selection.limits.excitation", [0.2, 0.9])
     ),
     Option("drum", "capacity of the drums", ALL, _set("selection.limits.drum_capacity", 12.0)),
+    Option("platform_frequency", "frequency of the platform", ALL, _frequency),
+    Option("duty_class", "duty class", ALL, _duty_class),
     Option("winch_tension", "largest tension", ALL, _set("robot.winches", {"tension_max": 900.0})),
     Option("sheave", "sheave", ALL, _set("selection.sheave_diameter", 0.2)),
     Option("fitting", "end fittings", ALL, _set("selection.termination_efficiency", 0.9)),

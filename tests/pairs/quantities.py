@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import combinations
 
+import finite_elements as fe
 import numpy as np
 from pairs.reference import State, compliance, reach_of, sag_of
 from scipy.optimize import minimize, minimize_scalar, nnls
@@ -43,6 +44,32 @@ def frequencies_Hz(state: State) -> np.ndarray:
     ends = np.linalg.norm(state.pull_N, axis=1), np.linalg.norm(state.exit_pull_N, axis=1)
     speed = np.sqrt(0.5 * (ends[0] + ends[1]) / state.problem.mass_kg_per_m)
     return speed / (2.0 * state.free_m)
+
+
+def platform_frequencies_Hz(state: State, text) -> np.ndarray:
+    """Return the natural frequencies of the platform on cables of finite elements."""
+    problem, turn, platform = state.problem, state.pose.rotation, text["robot"]["platform"]
+    case = next(iter(text.get("load_cases", ())), {})
+    mass = case.get("mass") or platform["mass"]
+    mass += text.get("effects", {}).get("platform_mass", {}).get("offset_kg", 0.0)
+    inertia = turn @ np.diag(platform.get("inertia", [0.0, 0.0, 0.0])) @ turn.T
+    levers, arm = problem.arms_m @ turn.T, turn @ problem.centre_m
+    body = fe.Body(mass, inertia, arm, levers, problem.centre_force_N)
+    chains = [
+        fe.Chain(
+            state.support_m[k], state.attachment_m[k], state.free_m[k], problem.stiffness_N[k],
+            problem.mass_kg_per_m[k], problem.load_N_per_m[k], -state.pull_N[k],
+        )
+        for k in range(problem.n)
+    ]  # fmt: skip
+    K, M = fe.assembled(body, chains)
+    if "inertia" not in platform:  # a point, whose turns mean nothing
+        free = [0, 1, 2, *range(6, len(K))]
+        K, M = K[np.ix_(free, free)], M[np.ix_(free, free)]
+    width = 6 if "inertia" in platform else 3
+    K, M = fe.condensed(K, M, width)
+    along = problem.freedoms[:, :width].T
+    return fe.frequencies_Hz(along.T @ K @ along, along.T @ M @ along)[0]
 
 
 def sag_ratio(state: State) -> float:

@@ -18,6 +18,8 @@ GRAVITY = 9.81
 PRESSURE = 0.5 * 1.25
 STEEL_EXPANSION = 12e-6
 SAG_MAX = 0.2
+ZP = {"M5": 4.5}
+"""ISO 4308-1, running ropes."""
 Data = Mapping[str, Any]
 
 
@@ -66,6 +68,7 @@ def allowable_of(study: Data, case: Data, grade: Data, size: Data) -> float:
     """Return breaking load times efficiency over safety factor [N]."""
     selection = study["selection"]
     factor = case.get("safety_factor") or selection.get("safety_factor", 5.0)
+    factor = case.get("safety_factor") or ZP.get(selection.get("duty_class"), factor)
     kept = case.get("termination_efficiency") or selection.get("termination_efficiency", 1.0)
     sheave = selection.get("sheave_diameter")
     is_fibre = grade.get("material") not in (None, "steel", "stainless steel")

@@ -39,6 +39,7 @@ QUICK = (
     ("floor", "excitation"),
     ("sheave", "fitting"),
     ("pulleys", "winch_tension"),
+    ("platform_frequency", "duty_class"),
 )
 """Pairs on the robot of three cables, which is quick, of as many options as there are."""
 

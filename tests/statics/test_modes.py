@@ -20,6 +20,7 @@ from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.modes import lowest_bound_Hz, platform_frequencies_Hz, platform_modes
 from designer.statics.shape import string_frequencies_Hz
 
+DOWN = np.array([0.0, 0.0, -1.0])
 INERTIA = frozen_array([[2.0e4, 1e3, 2e3], [1e3, 2.5e4, -1e3], [2e3, -1e3, 3.0e4]])
 
 
@@ -36,13 +37,20 @@ def twin(at: Statics, density: float) -> tuple[np.ndarray, np.ndarray]:
     EA, w = (np.broadcast_to(v, n) for v in (at.axial_stiffness_N, at.weight_N_per_m))
     ends = at.poses.attachment_points_m(robot)
     chains = [
-        fe.Chain(robot.exit_points_m[k], ends[k], at.length_m[k], EA[k], density, w[k], force[k])
+        fe.Chain(
+            robot.exit_points_m[k], ends[k], at.length_m[k], EA[k], density, w[k] * DOWN, force[k]
+        )
         for k in range(n)
     ]
     inertia = np.zeros((3, 3)) if body.inertia_kg_m2 is None else body.inertia_kg_m2
     levers, arm = robot.attachments_m @ turn.T, turn @ body.centre_of_mass_m
     moving = fe.Body(
-        body.mass_kg, turn @ inertia @ turn.T, arm, levers, robot.weight_N, not robot.is_point_mass
+        body.mass_kg,
+        turn @ inertia @ turn.T,
+        arm,
+        levers,
+        robot.weight_N * DOWN,
+        not robot.is_point_mass,
     )
     return fe.assembled(moving, chains)
 

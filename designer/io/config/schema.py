@@ -28,6 +28,7 @@ from designer.io.config import regions
 from designer.io.config.columns import Columns
 from designer.io.config.machine import ConfiguredCable, LoadCaseSection, RobotSection
 from designer.io.config.uncertainty import UncertaintySection
+from designer.model.duty import RUNNING_ROPE, DutyClass
 from designer.model.measurements import LogColumn, Measurements, Reading
 from designer.model.region import Sampling
 from designer.model.robot import Poses
@@ -198,6 +199,9 @@ class SelectionSection(Section):
     """Grades to choose among: all, or a list of ids from `designer catalog list`."""
     safety_factor: fields.SafetyFactor = 5.0
     """What is left of the minimum breaking load, over the allowable tension."""
+    duty_class: DutyClass = config_field("Duty class", "none")
+    """Group of the mechanism, M1 to M8: gives the safety factor of running ropes (ISO 4308-1) and,
+    with a sheave, a least sheave over rope diameter by the class of the rope."""
     objectives: Objectives = ("mass", "drum_diameter", "max_tension")
     """What ropes are compared by; the first decides."""
     termination_efficiency: fields.Efficiency = config_field("End fittings keep", 1.0)
@@ -216,12 +220,22 @@ class SelectionSection(Section):
     limits: LimitsSection = LimitsSection()
     """What else the chosen rope is checked against."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _factor_of_duty_class(cls, given: object) -> object:
+        factor = RUNNING_ROPE.get(str(given.get("duty_class"))) if isinstance(given, dict) else None
+        if factor is None or not isinstance(given, dict):
+            return given
+        regions.only_one_of(given, ("safety_factor", "duty_class"), "the selection")
+        return {**given, "safety_factor": factor}
+
     def selection(self) -> Selection:
         """Return how a product is chosen."""
         groups = self.groups or {}
         return Selection(
             grades=None if self.grades == "all" else self.grades,
             safety_factor=self.safety_factor,
+            duty_class=self.duty_class,
             objectives=self.objectives,
             termination_efficiency=self.termination_efficiency,
             sheave_diameter_m=self.sheave_diameter,
