@@ -15,6 +15,7 @@ import pytest
 
 import designer
 from designer.cli.commands import main
+from designer.report.render import REPORT_FILES
 from designer.resources import example_file
 
 
@@ -118,6 +119,6 @@ def test_a_report_is_written_whole_with_all_results(tmp_path: Path) -> None:
     analysis = designer.analyse(small(), designer.catalogue(with_plugins=False))
     designer.write_report(analysis, tmp_path / "out")
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert names == {"report.html", "report.pdf", "result.json", "candidates.csv", "workspace.nc"}
+    assert names == {*REPORT_FILES}
     written = json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))
     assert written == json.loads(analysis.to_json())

@@ -16,6 +16,7 @@ from designer.cli import terminal
 from designer.cli.commands import main
 from designer.cli.tables import print_grades
 from designer.grades.registry import load_catalogue
+from designer.report.render import REPORT_FILES
 
 STUDY = """
 name: small crane
@@ -236,7 +237,7 @@ def test_units_and_names_in_brackets_are_printed_as_they_are(designer) -> None:
 def test_only_what_was_written_is_named_and_no_older_answer_stays(designer) -> None:
     Path("a.yaml").write_text(STUDY)
     Path("out").mkdir()
-    for name in ("mine.txt", "candidates.csv", "workspace.nc"):
+    for name in ("mine.txt", "candidates.csv", "reactions.csv", "workspace.nc"):
         Path("out", name).write_text("older")
     outcome = designer("report", "a.yaml", "-o", "out")
     assert outcome.status == 0, outcome.err
@@ -324,7 +325,7 @@ def test_report_end_to_end(designer) -> None:
     assert told.status == 0, told.err
     folder = Path("study-report")
     names = {path.name for path in folder.iterdir()}
-    assert names == {"candidates.csv", "report.html", "report.pdf", "result.json", "workspace.nc"}
+    assert names == {*REPORT_FILES}
     result = json.loads((folder / "result.json").read_text())
     assert result["workspace"]["feasible"] is True
     assert result["selection"]["chosen"]["grade"] == "unirope-6x36-iwrc-1960"

@@ -78,7 +78,7 @@ def result(analysis: Analysis, tmp_path_factory: pytest.TempPathFactory) -> Any:
     folder = tmp_path_factory.mktemp("out")
     write_results(analysis, folder)
     names = {file.name for file in folder.iterdir()}
-    assert names == {"result.json", "candidates.csv", "workspace.nc"}
+    assert names == {"result.json", "candidates.csv", "reactions.csv", "workspace.nc"}
     return json.loads((folder / "result.json").read_text(encoding="utf-8"))
 
 

@@ -23,7 +23,8 @@ from designer.analysis.governing import (
 from designer.analysis.modes import PlatformModes, modes_of
 from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.analysis.provenance import Provenance
-from designer.analysis.requirements import requirements_of
+from designer.analysis.reactions import Reaction, reactions_of
+from designer.analysis.requirements import design_loads, requirements_of
 from designer.analysis.sensitivities import Sensitivities, group_sensitivities
 from designer.analysis.uncertainty.uncertainty import UncertaintyAnalysis, uncertainty_of
 from designer.analysis.verification import SecondAnswer, second_answers
@@ -299,6 +300,15 @@ class Analysis:
         """How likely the chosen rope is enough where inputs are not certain."""
         return uncertainty_of(self.study, self.selection, self.built, self.reporter)
 
+    @cached_property
+    def reactions(self) -> tuple[Reaction, ...]:
+        """What the cables of the design do to their supports; nothing where none holds."""
+        if self.qualities is None:
+            return ()
+        loads = design_loads(self.study, self.built, self.qualities.cable)
+        with self.reporter.task("reactions", len(loads)) as advance:
+            return reactions_of(loads, advance)
+
     @property
     def sweep_file(self) -> Path | None:
         """NetCDF file with every sample, if the study has a workspace."""
@@ -363,7 +373,7 @@ _TELLS_NO_GRADES = re.compile(
 """Whether a path of ``result.json`` is told by the chosen rope alone."""
 _STAGES = (
     *("pose", "workspace", "selection", "groups", "needs", "qualities", "requirements"),
-    *("verification", "carries", "group_slopes", "servable", "uncertainty"),
+    *("reactions", "verification", "carries", "group_slopes", "servable", "uncertainty"),
     *("worst_sizing", "outside", "governing", "findings", "modes"),
 )
 """In the order in which their progress is shown."""

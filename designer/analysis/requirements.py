@@ -198,16 +198,23 @@ def _of_design(
     """Yield what is asked beside strength of groups of cables, or of the configured family."""
     workspace = study.workspace
     assert workspace is not None
-    cable = cast(Cable, design.cable)  # or `Cables`, which have the same figures as arrays
-    robot, criteria = built.robot, criteria_of(built.robot, workspace, study.selection)
-    loads = [CaseLoads(workspace, (Loaded(STATIC, (robot, cable), robot, cable),))]
-    if study.load_cases:
-        loads = [
-            CaseLoads(workspace.of_case(case), tuple(case.on(robot, cable)))
-            for case in study.load_cases
-        ]
+    criteria = criteria_of(built.robot, workspace, study.selection)
+    loads = design_loads(study, built, design)
     with reporter.task("requirements", len(loads)) as advance:
         for evaluation in evaluate(loads, criteria, advance):
             yield evaluation.requirement
     if study.selection is not None and study.selection.limits.drum_capacity_m is not None:
         yield from drum_of(*extreme_lengths_m(loads[0]), study.selection)
+
+
+def design_loads(study: Study, built: AsBuilt, design: DesignCable) -> list[CaseLoads]:
+    """Return the load cases with the cables of the design, each in all its directions."""
+    workspace, robot = study.workspace, built.robot
+    assert workspace is not None
+    cable = cast(Cable, design.cable)  # or `Cables`, which have the same figures as arrays
+    if not study.load_cases:
+        return [CaseLoads(workspace, (Loaded(STATIC, (robot, cable), robot, cable),))]
+    return [
+        CaseLoads(workspace.of_case(case), tuple(case.on(robot, cable)))
+        for case in study.load_cases
+    ]

@@ -50,6 +50,7 @@ def result_dict(analysis: Analysis) -> Json:
                 analysis.uncertainty if is_read("uncertainty") else None
             ),
             **(_modes(analysis.modes if is_read("modes") or is_read("modes_at") else None)),
+            "reactions": analysis.reactions if is_read("reactions") else [],
             "findings": analysis.findings if is_read("findings") else None,
             "proof": (selection and selection.proof) or Proof("off"),
             "verification": analysis.verification if is_read("verification") else [],

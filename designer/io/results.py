@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from designer.analysis.analyse import Analysis
+from designer.analysis.reactions import reactions_csv
 from designer.analysis.selection_json import candidates_csv
 from designer.diagnosis.design import declared_by, spreads_of
 from designer.diagnosis.result import Diagnosis, effects_table
@@ -25,13 +26,15 @@ _RESULT = "a result.json that `designer report` wrote"
 
 
 def write_results(analysis: Analysis, folder: Path) -> None:
-    """Write ``result.json``, ``candidates.csv`` and ``workspace.nc`` into an existing folder.
+    """Write ``result.json`` into an existing folder, and the tables that the study asks for.
 
-    The last two only where the study asks for them.
+    Those are ``candidates.csv``, ``reactions.csv`` and ``workspace.nc``.
     """
     write_whole(folder / "result.json", f"{analysis.to_json()}\n".encode())
     if analysis.selection is not None:
         write_whole(folder / "candidates.csv", candidates_csv(analysis.selection).encode())
+    if analysis.reactions:
+        write_whole(folder / "reactions.csv", reactions_csv(analysis.reactions).encode())
     samples = analysis.sweep_file
     if samples is not None and samples != folder / "workspace.nc":
         shutil.copyfile(samples, folder / "workspace.nc")

@@ -116,6 +116,10 @@ class Robot:
                 f"exit points and {self.attachments_m.shape[0]} attachments"
             )
 
+        positions_m = self.winches.positions_m
+        if positions_m is not None and len(positions_m) != self.n_cables:
+            raise ValueError(f"{len(positions_m)} winches for {self.n_cables} exit points")
+
     @property
     def n_cables(self) -> int:
         """Number of cables."""
@@ -243,7 +247,8 @@ class Robot:
         body = self.platform
         if body.attachments_m is not None:
             body = replace(body, attachments_m=body.attachments_m[remaining])
-        return replace(self, exit_points_m=self.exit_points_m[remaining], platform=body)
+        exit_points_m, winches = self.exit_points_m[remaining], self.winches.without(cable)
+        return replace(self, exit_points_m=exit_points_m, platform=body, winches=winches)
 
     def loads_N(self, force_N: FloatArray | None = None) -> FloatArray:
         """Return `pull_N` less a force (n_poses, 3), upright frame, (1 or n_poses, 6) [N, N·m]."""

@@ -22,8 +22,15 @@ if TYPE_CHECKING:
 
     from designer.analysis.analyse import Analysis
 
-REPORT_FILES = ("report.html", "report.pdf", "result.json", "candidates.csv", "workspace.nc")
-"""What `designer report` writes; the last two only where the study asks for them."""
+REPORT_FILES = (
+    "report.html",
+    "report.pdf",
+    "result.json",
+    "candidates.csv",
+    "reactions.csv",
+    "workspace.nc",
+)
+"""What `designer report` writes; the last three only where the study asks for them."""
 
 
 def render_html(

@@ -15,7 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
@@ -93,14 +93,17 @@ def evaluate(
     loads: Sequence[CaseLoads],
     criteria: Sequence[Criterion],
     progress: Advance = lambda _: None,
+    *,
+    searches_again: bool = True,
 ) -> tuple[Evaluation, ...]:
     """Return each criterion in each load case, where it comes nearest to failing.
 
-    ``progress`` is called with 1 after each load case.
+    ``progress`` is called with 1 after each load case. After wind and inertia force were turned to
+    where they are worst, the place ``searches_again``, by turns.
     """
     evaluations: list[Evaluation] = []
     for case_loads in loads:
-        evaluations += _evaluate_case(case_loads, criteria)
+        evaluations += _evaluate_case(case_loads, criteria, searches_again)
         progress(1)
     return tuple(evaluations)
 
@@ -115,7 +118,9 @@ def _at_place(
     return _requirement(criterion, loaded, place, quantity[0][0], statics)
 
 
-def _evaluate_case(loads: CaseLoads, criteria: Sequence[Criterion]) -> Iterator[Evaluation]:
+def _evaluate_case(
+    loads: CaseLoads, criteria: Sequence[Criterion], searches_again: bool
+) -> Iterator[Evaluation]:
     keeps = loads.keeps_lengths
     lost = any(loaded.lost_cable for loaded in loads.directions)
     of_case = [criterion for criterion in criteria if criterion.at_rest_after_loss or not lost]
@@ -140,14 +145,18 @@ def _evaluate_case(loads: CaseLoads, criteria: Sequence[Criterion]) -> Iterator[
         for criterion, extreme in zip(columns, extremes, strict=True):
             if np.isneginf(extreme.demand):  # no pose of the case counts
                 continue
-            turned, place = _turned(criterion, loaded, workspace, extreme)
+            turned, place = _turned(criterion, loaded, workspace, extreme, searches_again)
             requirement = _at_place(criterion, turned, workspace, place)
             if requirement is not None:
                 yield Evaluation(criterion, loads, turned, requirement)
 
 
 def _turned(
-    criterion: Criterion, loaded: Loaded, workspace: Workspace, extreme: Worst
+    criterion: Criterion,
+    loaded: Loaded,
+    workspace: Workspace,
+    extreme: Worst,
+    searches_again: bool,
 ) -> tuple[Loaded, FloatArray]:
     """Turn wind and inertia force to where they are worst, and search the pose again, by turns."""
     if not loaded.is_turned:
@@ -159,7 +168,7 @@ def _turned(
             return float(_severity(other, workspace, [criterion], place[None])[0, 0])
 
         loaded, severity = steepest(loaded, before, severity_of)
-        if loaded.keeps_lengths:  # a search for the pose takes long
+        if loaded.keeps_lengths or not searches_again:  # a search for the pose takes long
             break
         demand = partial(_severity, loaded, workspace, [criterion])
         (again,) = refine_over_branches(workspace.space, demand, place[None], LIGHT)
@@ -195,16 +204,7 @@ def _quantities(
     seeks_better: bool = True,
 ) -> tuple[list[FloatArray], Statics]:
     """Return each quantity at places (n, …), NaN where one does not count, and the equilibria."""
-    poses = Poses.at(places)
-    if loaded.keeps_lengths:
-        loss = settled(loaded, poses, seeks_better=seeks_better)
-        statics, rows = loss.statics, np.flatnonzero(loss.before.is_solved)
-        rests = (loss.fate[rows] == Fate.HOLDS) | (loss.fate[rows] == Fate.RESTS_ELSEWHERE)
-        counts = rests & ~is_left_out(loss.before, workspace.hangs_below)[rows]
-    else:
-        statics = solve_sagging(loaded.robot, poses, loaded.cable, seeks_better=seeks_better)
-        rows = np.arange(len(places))
-        counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+    statics, rows, counts = equilibria(loaded, workspace, places, seeks_better=seeks_better)
     quantities = []
     for criterion in criteria:
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -213,6 +213,21 @@ def _quantities(
         full[rows] = np.where(counts[:, None], quantity, np.nan)
         quantities.append(full)
     return quantities, statics
+
+
+def equilibria(
+    loaded: Loaded, workspace: Workspace, places: FloatArray, *, seeks_better: bool = True
+) -> tuple[Statics, IntArray, BoolArray]:
+    """Return the equilibria at places, at rest on kept lengths; of which they are; which count."""
+    poses = Poses.at(places)
+    if not loaded.keeps_lengths:
+        statics = solve_sagging(loaded.robot, poses, loaded.cable, seeks_better=seeks_better)
+        counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+        return statics, np.arange(len(places)), counts
+    loss = settled(loaded, poses, seeks_better=seeks_better)
+    rows = np.flatnonzero(loss.before.is_solved)
+    rests = (loss.fate[rows] == Fate.HOLDS) | (loss.fate[rows] == Fate.RESTS_ELSEWHERE)
+    return loss.statics, rows, rests & ~is_left_out(loss.before, workspace.hangs_below)[rows]
 
 
 def _requirement(

@@ -20,7 +20,14 @@ from tempfile import TemporaryDirectory
 
 import pypdf
 
-FILES = ("report.html", "report.pdf", "result.json", "candidates.csv", "workspace.nc")
+FILES = (
+    "report.html",
+    "report.pdf",
+    "result.json",
+    "candidates.csv",
+    "reactions.csv",
+    "workspace.nc",
+)
 
 
 def processor_time_s(python: str, config: Path, folder: Path) -> float:

@@ -41,3 +41,32 @@ def test_mistakes(
     (fault,) = faults_of(STUDY % given + WORKSPACE)
     assert fault.field == f"robot.winches.{field}"
     assert problem in fault.problem
+
+
+AT_FEET = "positions: [[0, 0, 1], [9, 0, 1], [4, 9, 1]]"
+
+
+def test_positions(study_of: Callable[[str], Study]) -> None:
+    robot = study_of(STUDY % AT_FEET + WORKSPACE).robot
+    assert robot.winches.positions_m is not None
+    assert robot.winches.positions_m[2].tolist() == [4.0, 9.0, 1.0]
+    without = robot.without_cable(1).winches.positions_m
+    assert without is not None
+    assert without.tolist() == [[9.0, 0.0, 1.0], [4.0, 9.0, 1.0]]
+
+
+@pytest.mark.parametrize(
+    ("given", "more", "field", "problem"),
+    [
+        ("positions: [[0, 0, 1], [9, 0, 1]]", "", "", "2 positions for 3 anchors"),
+        (AT_FEET.replace("[9, 0, 1]", "[9, 0, 9]"), "", "[1]", "0 m from robot.anchors[1]"),
+        (AT_FEET.replace("[9, 0, 1]", "[9, 0, 1e6]"), "", "[1]", "1e+06 m from"),
+        (AT_FEET, "effects: {pulley_radius: {radius_m: 0.1}}", "", "from straight below"),
+    ],
+)
+def test_positions_that_do_not_fit(
+    faults_of: Callable[[str], list[Fault]], given: str, more: str, field: str, problem: str
+) -> None:
+    (fault,) = faults_of(STUDY % given + WORKSPACE + more)
+    assert fault.field == f"robot.winches.positions{field}"
+    assert problem in fault.problem

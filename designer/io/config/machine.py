@@ -21,6 +21,7 @@ from designer.model.winches import Winches
 _points = list_of(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
 
 Anchors = Annotated[tuple[fields.Point, ...], _points]
+WinchPositions = Annotated[tuple[fields.Point, ...], _points]
 Attachments = Annotated[tuple[fields.Point, ...], _points]
 
 
@@ -89,9 +90,14 @@ class WinchesSection(Section):
     tension_max: fields.BreakingLoad | None = config_field("Largest tension of a winch")
     """Largest tension of a cable at its exit point, in every load case."""
 
+    positions: WinchPositions | None = config_field("Winch")
+    """Where the cable comes from to its exit point: its winch, or the last sheave before that;
+    tells the direction of that branch. With pulleys it comes from below."""
+
     def winches(self) -> Winches:
         """Return the winches."""
-        return Winches(self.tension_max)
+        positions = None if self.positions is None else frozen_array(self.positions)
+        return Winches(self.tension_max, positions)
 
 
 class RobotSection(Section):

@@ -117,6 +117,8 @@ LARGEST = BOUNDS["distance"]
 AT_MOST = f"at most {LARGEST.most:g} m: {LARGEST.reason}; check the unit"
 _ANCHORS = "robot.anchors"
 _ATTACHMENTS = "robot.platform.attachments"
+_WINCHES = "robot.winches.positions"
+_NEAREST_WINCH_M = 1e-3
 _NO_POINT_MASS = "robot.platform.attachments, or leave it out"
 
 
@@ -354,6 +356,25 @@ def rank(points: FloatArray) -> int:
     return int(np.sum(spread > _FLAT * max(spread[0], np.finfo(float).tiny)))
 
 
+def winches_fit(parts: Parts) -> Iterator[Fault]:
+    """Each cable has a winch, apart from its exit point; with pulleys it comes from below."""
+    anchors, positions = parts.array(_ANCHORS), parts.array(_WINCHES)
+    if anchors is None or positions is None:
+        return
+    if any(effect.id == "pulley_radius" for _, effect in parts.declared.effects):
+        problem = "with effects.pulley_radius each cable comes to its pulley from straight below"
+        yield parts.fault(_WINCHES, problem, "one of the two")
+    if len(positions) != len(anchors):
+        problem = f"{len(positions)} positions for {len(anchors)} anchors"
+        yield parts.fault(_WINCHES, problem, "one for each anchor, in their order")
+        return
+    distance_m = np.linalg.norm(positions - anchors, axis=1)
+    for index in np.flatnonzero((distance_m < _NEAREST_WINCH_M) | (distance_m > LARGEST.most)):
+        problem = f"is {distance_m[index]:.4g} m from robot.anchors[{index}]"
+        expected = f"{_NEAREST_WINCH_M:g} m or more, so that it has a direction; {AT_MOST}"
+        yield parts.fault(_WINCHES, problem, expected, int(index))
+
+
 ROBOT_CHECKS = (
     distinct_cables,
     anchors_span_area,
@@ -366,4 +387,5 @@ ROBOT_CHECKS = (
     load_is_not_cancelled,
     strain_stays_small,
     robot_has_a_size,
+    winches_fit,
 )

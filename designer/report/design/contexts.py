@@ -14,6 +14,7 @@ import numpy as np
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.governing import GoverningPose
+from designer.analysis.reactions import Reaction
 from designer.grades.grade import Grade, Size
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.verdict import Verdict
@@ -256,6 +257,20 @@ def _cables(analysis: Analysis) -> Iterator[FabricatedCable]:
         yield FabricatedCable(number, rope.grade, rope.size, longest_m, shortest_m)
 
 
+def reactions(analysis: Analysis) -> Context | None:
+    """What each support bears in each load case; None where no cable holds."""
+    if not analysis.reactions or analysis.qualities is None:
+        return None
+    supports: dict[tuple[int, str], dict[str, Reaction]] = {}
+    for reaction in analysis.reactions:
+        supports.setdefault((reaction.mast, reaction.load_case), {})[reaction.extreme] = reaction
+    return {
+        "supports": supports,
+        "cable": analysis.qualities.cable.name,
+        "has_winch_branch": analysis.reactions[0].winch_branch_N is not None,
+    }
+
+
 def proof_statement(proved: Proof) -> Statement:
     """Return what is proved, in a sentence or two."""
     return plain_statement("report/proved.html.j2", {"proved": proved})
@@ -346,6 +361,8 @@ def provenance(analysis: Analysis) -> Context:
     from designer.kernel.answer import TOLERANCE
 
     files = ["every candidate in candidates.csv"] if analysis.selection is not None else []
+    if analysis.reactions:
+        files.append("the extremes of every reaction in reactions.csv")
     if analysis.sweep_file is not None:
         files.append(f"every sample in {analysis.sweep_file.name}")
     left = _left_at_default(analysis)

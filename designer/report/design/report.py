@@ -25,6 +25,7 @@ SECTIONS: tuple[tuple[str, Callable[[Analysis], Context | None]], ...] = (
     ("modes", contexts.modes),
     ("clearance", contexts.clearance),
     ("workshop", contexts.fabrication),
+    ("reactions", contexts.reactions),
     ("proof", contexts.proof),
     ("pose", pose.pose),
     ("family", workspace.family),

@@ -1,0 +1,158 @@
+"""The envelope of what the cables of the design do to their supports, in every load case."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.documents.plain import Json, csv_text, plain, record
+from designer.model.load_case import Loaded
+from designer.model.space import named_place
+from designer.progress import Advance
+from designer.selection.criteria import Criterion
+from designer.selection.requirements import CaseLoads, Evaluation, equilibria, evaluate
+from designer.statics.inverse import Statics
+from designer.statics.reactions import platform_branch_N, reaction_N, winch_branch_N
+
+EXTREMES = ("largest", "horizontal", "up", "down")
+"""Of which of its sizes a reaction is largest; the last two along the true vertical, so that an
+upward force that never is one has a negative size."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reaction:
+    """What a cable does to the support of its exit point, where one size of it is largest.
+
+    Parameters
+    ----------
+    mast : int
+        The exit point, from 1.
+    load_case, extreme : str
+        In which load case, and one of `EXTREMES`.
+    size_N : float
+        That size [N].
+    force_N : array (3,)
+        All known branches of the cable together, world frame [N].
+    platform_branch_N, winch_branch_N : array (3,)
+        Each branch; None where nothing tells where the winch stands [N].
+    exit_point_m : array (3,)
+        Where the cable leaves the base, world frame [m].
+    loaded : Loaded
+        In which direction of wind and inertia force, or without which cable.
+    place : array (n_coordinates,)
+        Where the platform is, see `designer.model.space` [m, rad].
+    """
+
+    mast: int
+    load_case: str
+    extreme: str
+    size_N: float
+    force_N: FloatArray
+    platform_branch_N: FloatArray
+    winch_branch_N: FloatArray | None
+    exit_point_m: FloatArray
+    loaded: Loaded = field(metadata={"json": lambda loaded: {"direction": loaded.words or None}})
+    place: FloatArray = field(metadata={"json": named_place})
+
+
+def sizes_N(statics: Statics) -> FloatArray:
+    """Return the sizes of the reactions, in the order of `EXTREMES` (..., n_cables, 4) [N]."""
+    reaction, up = reaction_N(statics), statics.robot.level[2]
+    vertical = reaction @ up
+    level = np.linalg.norm(reaction - vertical[..., None] * up, axis=-1)
+    return np.stack([np.linalg.norm(reaction, axis=-1), level, vertical, -vertical], axis=-1)
+
+
+def reactions_of(loads: Sequence[CaseLoads], progress: Advance) -> tuple[Reaction, ...]:
+    """Return the extremes of each support in each load case, searched as requirements are.
+
+    Wind and inertia force are turned to where they are worst at the place that is worst in one of
+    their first directions.
+    """
+    evaluations = evaluate(loads, _criteria(loads), progress, searches_again=False)
+    reactions = map(_reaction, evaluations)
+    order = {case.case.name: number for number, case in enumerate(loads)}
+    return tuple(
+        sorted(reactions, key=lambda r: (r.mast, order[r.load_case], EXTREMES.index(r.extreme)))
+    )
+
+
+def _criteria(loads: Sequence[CaseLoads]) -> list[Criterion]:
+    """Return a criterion without a limit for each extreme of each support."""
+    n_cables = loads[0].directions[0].robot.n_cables
+    last: list[tuple[Statics, FloatArray]] = []  # all criteria look at the same equilibria
+
+    def sizes(loaded: Loaded, statics: Statics) -> FloatArray:
+        if not last or last[0][0] is not statics:
+            every = sizes_N(statics)
+            if loaded.lost_cable is not None:
+                every = np.insert(every, loaded.lost_cable - 1, np.nan, axis=-2)
+            last[:] = [(statics, every)]
+        return last[0][1]
+
+    def criterion(mast: int, extreme: str) -> Criterion:
+        number = EXTREMES.index(extreme)
+        return Criterion(
+            id=f"{extreme} {mast}",
+            title="",
+            formula="",
+            source="",
+            unit="N",
+            quantity=lambda loaded, statics: sizes(loaded, statics)[..., mast - 1, [number]],
+            limits=(np.inf,),
+            kind="at_most",
+            at_rest_after_loss=True,
+        )
+
+    return [criterion(k, extreme) for k in range(1, n_cables + 1) for extreme in EXTREMES]
+
+
+def _reaction(evaluation: Evaluation) -> Reaction:
+    requirement = evaluation.requirement
+    loaded, place = evaluation.loaded, requirement.place
+    assert place is not None
+    statics, _, _ = equilibria(loaded, evaluation.loads.workspace, place[None])
+    extreme, mast = requirement.id.split()
+    cable = int(mast) - 1
+    column = cable - (loaded.lost_cable is not None and loaded.lost_cable <= cable)
+    winch_branch = winch_branch_N(statics)
+    return Reaction(
+        mast=int(mast),
+        load_case=requirement.load_case,
+        extreme=extreme,
+        size_N=requirement.demand,
+        force_N=reaction_N(statics)[0, column],
+        platform_branch_N=platform_branch_N(statics)[0, column],
+        winch_branch_N=None if winch_branch is None else winch_branch[0, column],
+        exit_point_m=loaded.robot.exit_points_m[cable],
+        loaded=loaded,
+        place=place,
+    )
+
+
+def reactions_csv(reactions: Sequence[Reaction]) -> str:
+    """Return the extremes as a CSV table, a component a column; a missing number is empty."""
+    rows = [dict(_cells(plain(record(reaction)))) for reaction in reactions]
+    names = list(rows[0]) if rows else ["mast"]
+    return csv_text([names, *([row[name] for name in names] for row in rows)])
+
+
+_VECTORS = {
+    **{f"{name}_N": f"{name}_{{}}_N" for name in ("force", "platform_branch", "winch_branch")},
+    "exit_point_m": "exit_point_{}_m",
+    "pose": "pose_{}_m",
+    "rotation_vector": "rotation_vector_{}_rad",
+}
+"""Columns that one key becomes, with x, y and z."""
+
+
+def _cells(row: Json) -> Iterator[tuple[str, object]]:
+    for name, value in row.items():
+        if name in _VECTORS:
+            components = [None] * 3 if value is None else value
+            yield from zip(map(_VECTORS[name].format, "xyz"), components, strict=True)
+        else:
+            yield name, value

@@ -1,0 +1,177 @@
+"""Reactions on the supports, against a reference that has world axes alone."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from pairs.agreement import Situation, ropes_of
+from pairs.options import BASES
+from pairs.reference import Pose, State, settle, solve
+from pairs.table import analysed
+
+from designer.analysis.analyse import Analysis
+from designer.analysis.reactions import EXTREMES, Reaction, reactions_csv
+from designer.analysis.result_json import result_dict
+from designer.model.robot import Poses
+from designer.report.design.drawings import Drawings
+from designer.report.design.report import section
+from designer.report.render import rendered
+from designer.statics.inverse import solve_sagging
+from designer.statics.reactions import platform_branch_N
+from designer.workspace.demand import settled
+
+Study = dict[str, Any]
+BOXES = {
+    "crane": [[5.0, 7.0], [3.0, 5.0], [2.0, 5.0]],
+    "six": [[-0.2, 0.3], [0.0, 0.3], [1.5, 2.5]],
+}
+
+
+def study_of(base: str, case: Study | None = None, **robot: Any) -> Study:
+    """Return a small robot of the pairs over a box, in one load case."""
+    text = BASES[base]
+    workspace = {"region": {"box": BOXES[base]}, "samples": 40, "proof": 0}
+    cases = {} if case is None else {"load_cases": [{"name": "case", **case}]}
+    return text | {"robot": text["robot"] | robot, "workspace": workspace} | cases
+
+
+def state_of(study: Study, analysis: Analysis, reaction: Reaction) -> State:
+    """Return what the reference finds at the place of a reaction."""
+    (case,) = study.get("load_cases", [{}])
+    loaded = reaction.loaded
+    situation = Situation(study, ropes_of(analysis), case, loaded.wind, loaded.inertia)
+    return solve(situation.problem, Pose.of(reaction.place))
+
+
+def branches_N(study: Study, state: State) -> tuple[np.ndarray, np.ndarray | None]:
+    """Return what both branches of each cable do to its support (n, 3)."""
+    tension = np.linalg.norm(state.exit_pull_N, axis=1)[:, None]
+    positions = study["robot"].get("winches", {}).get("positions")
+    if "pulley_radius" in study.get("effects", {}):
+        return -state.exit_pull_N, -tension * state.problem.up
+    if positions is None:
+        return -state.exit_pull_N, None
+    along = np.array(positions) - state.problem.exits_m
+    return -state.exit_pull_N, tension * along / np.linalg.norm(along, axis=1)[:, None]
+
+
+def size_N(force: np.ndarray, up: np.ndarray, extreme: str) -> float:
+    vertical = float(force @ up)
+    level = float(np.linalg.norm(force - vertical * up))
+    sizes = {"largest": np.linalg.norm(force), "horizontal": level}
+    return float((sizes | {"up": vertical, "down": -vertical})[extreme])
+
+
+def winches_of(base: str) -> Study:
+    """Return winches at the feet of masts that lean a little."""
+    anchors = np.array(BASES[base]["robot"]["anchors"])
+    return {"positions": (anchors * [1.1, 1.1, 0.0] + [0.3, -0.2, 0.1]).tolist()}
+
+
+WIND = {"wind": {"speed": 20.0, "direction": [0.6, 0.8, 0.0]}, "ice": {"thickness": 0.005}}
+STUDIES = {
+    "crane": study_of("crane"),
+    "crane, winches": study_of("crane", winches=winches_of("crane")),
+    "crane, wind": study_of("crane", WIND),
+    "crane, tilted": study_of("crane", gravity=[0.1, -0.05, -1.0], winches=winches_of("crane")),
+    "crane, pulleys": study_of("crane", {"dynamic_factor": 1.3})
+    | {"effects": {"pulley_radius": {"radius_m": 0.2}}},
+    "six": study_of("six", {"acceleration": 0.5}, winches=winches_of("six")),
+}
+EACH = [pytest.param(n, marks=[pytest.mark.slow] * (n == "six")) for n in STUDIES]
+Solve = Callable[[str], Analysis]
+
+
+@pytest.fixture(scope="module")
+def solve_study(tmp_path_factory: pytest.TempPathFactory) -> Solve:
+    return cache(lambda name: analysed(STUDIES[name], tmp_path_factory.mktemp("study")))
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_reactions_match_reference_and_add_up(name: str, solve_study: Solve) -> None:
+    study = STUDIES[name]
+    analysis = solve_study(name)
+    reactions = analysis.reactions
+    assert len(reactions) == 4 * len(study["robot"]["anchors"])
+    for reaction in reactions[:: 5 if name == "six" else 1]:
+        state = state_of(study, analysis, reaction)
+        run, winch = branches_N(study, state)
+        k, scale = reaction.mast - 1, float(np.linalg.norm(run, axis=1).max())
+        margin = 1e-6 * scale
+        assert np.allclose(reaction.platform_branch_N, run[k], rtol=0, atol=margin)
+        assert (reaction.winch_branch_N is None) == (winch is None)
+        total = run if winch is None else run + winch
+        assert np.allclose(reaction.force_N, total[k], rtol=0, atol=margin)
+        size = size_N(reaction.force_N, state.problem.up, reaction.extreme)
+        assert reaction.size_N == pytest.approx(size)
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_runs_carry_platform_and_cables(name: str, solve_study: Solve) -> None:
+    study = STUDIES[name]
+    analysis = solve_study(name)
+    for reaction in analysis.reactions[::5]:
+        loaded = reaction.loaded
+        (case,) = study.get("load_cases", [{}])
+        problem = Situation(study, ropes_of(analysis), case, loaded.wind, loaded.inertia).problem
+        statics = solve_sagging(loaded.robot, Poses.at(reaction.place), loaded.cable)
+        loads = problem.force_N + problem.centre_force_N
+        loads = loads + statics.free_length_m @ problem.load_N_per_m
+        runs = platform_branch_N(statics).sum(axis=0)
+        assert np.allclose(runs, loads, rtol=0, atol=1e-7 * np.linalg.norm(loads))
+
+
+@pytest.mark.parametrize("name", ["crane", "crane, winches", "crane, pulleys"])
+def test_no_sample_exceeds_the_envelope(name: str, solve_study: Solve) -> None:
+    study = STUDIES[name]
+    analysis = solve_study(name)
+    rng = np.random.default_rng(20261125)
+    low, high = np.array(study["workspace"]["region"]["box"]).T
+    (case,) = study.get("load_cases", [{}])
+    problem = Situation(study, ropes_of(analysis), case).problem
+    dense: dict[tuple[int, str], float] = {}
+    for share in [*rng.uniform(size=(60, 3)), *np.ndindex(2, 2, 2)]:
+        run, winch = branches_N(study, solve(problem, Pose(low + np.array(share) * (high - low))))
+        for mast, force in enumerate(run if winch is None else run + winch, start=1):
+            for extreme in EXTREMES:
+                size = size_N(force, problem.up, extreme)
+                dense[mast, extreme] = max(dense.get((mast, extreme), -np.inf), size)
+    for reaction in analysis.reactions:
+        largest = dense[reaction.mast, reaction.extreme]
+        assert largest - 1e-6 * abs(largest) <= reaction.size_N <= largest + 0.1 * abs(largest)
+
+
+def test_lost_cable_pulls_on_no_mast(tmp_path: Path) -> None:
+    text = BASES["four"]
+    study = text | {"load_cases": [{"name": "case", "cable_lost": 2}]}
+    analysis = analysed(study, tmp_path)
+    assert {reaction.mast for reaction in analysis.reactions} == {1, 3, 4}
+    for reaction in analysis.reactions:
+        loss = settled(reaction.loaded, Poses.at(reaction.place[None]))
+        lengths = np.delete(loss.before.length_m[0], 1)
+        problem = Situation(study, ropes_of(analysis), study["load_cases"][0]).problem
+        rest = settle(problem.without(2), Pose.of(loss.rest.place[0]), lengths)
+        column = reaction.mast - 1 - (reaction.mast > 2)
+        margin = 1e-3 * np.linalg.norm(rest.exit_pull_N, axis=1).max()
+        assert np.allclose(reaction.force_N, -rest.exit_pull_N[column], rtol=0, atol=margin)
+
+
+def test_files_and_page_have_every_reaction(solve_study: Solve) -> None:
+    analysis = solve_study("crane, winches")
+    rows = list(csv.DictReader(io.StringIO(reactions_csv(analysis.reactions))))
+    entries = result_dict(analysis)["reactions"]
+    assert len(rows) == len(entries) == 12
+    for row, entry, reaction in zip(rows, entries, analysis.reactions, strict=True):
+        assert (row["mast"], entry["load_case"]) == (str(reaction.mast), "static")
+        assert entry["force_N"] == reaction.force_N.tolist()
+        assert float(row["winch_branch_z_N"]) == reaction.winch_branch_N[2] < 0.0
+    page = rendered(section(Drawings(analysis), "reactions")).body
+    assert "the branch from the winch" in page
+    assert "robot.winches.positions" not in page
