@@ -69,6 +69,8 @@ BOUNDS: Mapping[str, Bound] = {
     "frequency": Bound(units.FREQUENCY, 1e-3, 1e4, "from a swell of the sea to a note"),
     "stiffness": Bound(units.STIFFNESS, 1e-3, 1e12, "softer than a feather, or stiffer than rock"),
     "drum capacity": Bound(units.LENGTH, 1e-2, 2e4, "no cable is longer than some kilometres"),
+    "gear ratio": Bound(units.NUMBER, 1e-2, 1e5, "no gear of a winch turns faster or slower"),
+    "torque": Bound(units.MOMENT, 1e-4, 1e8, "from a toy to the drum of a mine hoist"),
     "ice": Bound(units.LENGTH, 1e-5, 0.5, "from rime to what breaks masts"),
     "safety factor": Bound(units.NUMBER, 1.0, 100.0, "lifts of persons have 12"),
     "efficiency": Bound(units.FRACTION, 0.01, 1.0, "a fitting keeps a part of the breaking load"),

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer import checked
-from designer.arrays import frozen_array
+from designer.arrays import FloatArray, frozen_array
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,10 +21,34 @@ class Winches(checked.Value):
     positions_m : array (n_cables, 3) or None
         Where each cable comes from to its exit point: its winch, or the last sheave before that,
         world frame [m].
+    drum_diameter_m : float or None
+        At the bottom of the grooves [m].
+    layers : int
+        Of rope on the drum at most; forces on the outermost are counted.
+    gear_ratio, efficiency : float
+        Turns of the motor for one of the drum, and the share of its work that reaches the exit
+        point: gear, drum and sheaves together.
+    motor_torque_Nm : float or None
+        Torque that the motor may give while it holds or slowly pulls [N·m].
     """
 
     tension_max_N: checked.Positive | None = None
     positions_m: checked.Points | None = None
+    drum_diameter_m: checked.Positive | None = None
+    layers: checked.Count = 1
+    gear_ratio: checked.Positive = 1.0
+    efficiency: checked.Efficiency = 1.0
+    motor_torque_Nm: checked.Positive | None = None
+
+    def torque_Nm(self, tension_N: FloatArray, rope_diameter_m: FloatArray | float) -> FloatArray:
+        """Return the motor's torque that pulls with a tension at the exit point (...) [N·m].
+
+        About the centre of the rope in the outermost layer, of layers as far apart as the rope is
+        thick: M = T (D + (2 k - 1) d) / (2 i η).
+        """
+        assert self.drum_diameter_m is not None
+        radius_m = 0.5 * (self.drum_diameter_m + (2 * self.layers - 1) * rope_diameter_m)
+        return np.asarray(tension_N * radius_m / (self.gear_ratio * self.efficiency))
 
     def without(self, cable: int) -> Winches:
         """Return the winches without that of one cable, counted from 1."""

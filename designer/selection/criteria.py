@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.model.cable import Cable, Cables
 from designer.model.load_case import Loaded
 from designer.model.robot import Robot
 from designer.model.winches import Winches
@@ -153,6 +154,27 @@ def _of_winches(winches: Winches) -> Iterator[Criterion]:
             kind="at_most",
             at_rest_after_loss=True,  # brakes have to hold it as well
         )
+    if winches.motor_torque_Nm is not None:
+        yield Criterion(
+            id="winch_torque",
+            title="Motor",
+            formula="M = T (D + (2k - 1) d) / (2 i η) ≤ torque of the motor; rope in layer k",
+            source=f"robot.winches.motor.torque; {WHERE}",
+            unit="N*m",
+            quantity=_motor_torque_Nm,
+            limits=(winches.motor_torque_Nm,),
+            kind="at_most",
+        )
+
+
+def _motor_torque_Nm(loaded: Loaded, statics: Statics) -> FloatArray:
+    """Return the torque of each motor (n, n_cables) at rest, its rope in the outermost layer."""
+    cable: Cable | Cables = loaded.cable
+    if isinstance(cable, Cables):
+        rope_m: FloatArray | float = np.array([each.diameter_m for each in cable.each])
+    else:
+        rope_m = cable.diameter_m
+    return statics.robot.winches.torque_Nm(statics.exit_tension_N, rope_m)
 
 
 def _of_workspace(workspace: Workspace) -> Iterator[Criterion]:

@@ -51,6 +51,37 @@ def test_largest_tension_at_exit_points(tmp_path: Path) -> None:
     assert winch.utilisation == pytest.approx(winch.demand / 2500.0)
 
 
+def test_torque_of_the_motors(tmp_path: Path) -> None:
+    winches = {"drum_diameter": 0.3, "layers": 3, "gear_ratio": 20.0, "efficiency": 0.7}
+    study = crane(winches=winches | {"motor": {"torque": 1.0}})
+    analysis = analysed(study, tmp_path)
+    (motor,) = (each for each in analysis.requirements if each.id == "winch_torque")
+    assert motor.place is not None
+    assert not motor.holds
+    ropes = ropes_of(analysis)
+    state = solve(Situation(study, ropes, {}).problem, Pose(motor.place))
+    pull_N = np.linalg.norm(state.exit_pull_N, axis=1)
+    # Two layers lie below the outermost, and half a rope.
+    radius_m = 0.15 + 2.5 * ropes[0][1]["diameter"]
+    assert motor.demand * 20.0 * 0.7 == pytest.approx(pull_N.max() * radius_m, rel=1e-6)
+
+
+def test_torque_with_groups_of_cables(tmp_path: Path) -> None:
+    drum = {"drum_diameter": 0.3, "motor": {"torque": 1e5}}
+    study = crane(winches=drum)
+    groups = {"first": [1], "others": [2, 3]}
+    study |= {"selection": study["selection"] | {"groups": groups, "objectives": ["mass"]}}
+    analysis = analysed(study, tmp_path)
+    (motor,) = (each for each in analysis.requirements if each.id == "winch_torque")
+    assert motor.place is not None
+    assert motor.cable is not None
+    ropes = ropes_of(analysis)
+    state = solve(Situation(study, ropes, {}).problem, Pose(motor.place))
+    pull_N = np.linalg.norm(state.exit_pull_N, axis=1)
+    radius_m = 0.15 + 0.5 * np.array([size["diameter"] for _, size in ropes])
+    assert motor.demand == pytest.approx((pull_N * radius_m).max(), rel=1e-6)
+
+
 @pytest.mark.parametrize("share", [0.99, 1.01])
 def test_winch_decides_the_answer(tmp_path: Path, share: float) -> None:
     asked = analysed(crane(winches={"tension_max": 1e6}), tmp_path)

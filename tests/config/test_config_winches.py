@@ -70,3 +70,31 @@ def test_positions_that_do_not_fit(
     (fault,) = faults_of(STUDY % given + WORKSPACE + more)
     assert fault.field == f"robot.winches.positions{field}"
     assert problem in fault.problem
+
+
+DRIVEN = "drum_diameter: 60 cm, layers: 2, gear_ratio: 50, efficiency: 0.8, motor: {torque: 1 kN*m}"
+
+
+def test_drum_gear_and_motor(study_of: Callable[[str], Study]) -> None:
+    winches = study_of(STUDY % DRIVEN + WORKSPACE).robot.winches
+    assert winches.torque_Nm(8000.0, 0.01) == pytest.approx(8000.0 * (0.3 + 0.015) / 50 / 0.8)
+    assert winches.motor_torque_Nm == pytest.approx(1000.0)
+
+
+@pytest.mark.parametrize(
+    ("given", "field", "problem"),
+    [
+        ("layers: 2", "layers", "no motor"),
+        ("drum_diameter: 60 cm", "drum_diameter", "no motor"),
+        ("motor: {torque: 5 N*m}", "motor", "no drum"),
+        ("drum_diameter: 1 m, motor: {torque: 0}", "motor.torque", "out of range"),
+        ("drum_diameter: 1 m, motor: {}", "motor.torque", "missing"),
+        ("drum_diameter: 1 m, gear_ratio: 0, motor: {torque: 1}", "gear_ratio", "out of range"),
+    ],
+)
+def test_winches_that_do_not_fit(
+    faults_of: Callable[[str], list[Fault]], given: str, field: str, problem: str
+) -> None:
+    (fault,) = faults_of(STUDY % given + WORKSPACE)
+    assert fault.field == f"robot.winches.{field}"
+    assert problem in fault.problem

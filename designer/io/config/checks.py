@@ -161,11 +161,18 @@ _NO_LIMIT = "has no meaning without selection.groups"
 _NO_CASES = "a workspace: a load case is for all its poses"
 _NO_ROPE = "a selection: it is the chosen rope that may not be enough"
 _NO_WINCHES = "a workspace: winches are held against what they meet in all its poses"
+_NO_MOTOR = "robot.winches.motor: {torque: …}, or leave it out"
+_NO_DRUM = "robot.winches.drum_diameter, which tells the torque of a tension"
 _NEEDS = (
     ("selection", "workspace", "has no meaning without a workspace", _NO_WORKSPACE),
     ("selection.max_distinct_products", _GROUPS, _NO_LIMIT, "groups, or neither"),
     (_CASES, "workspace", "there is no workspace", _NO_CASES),
     (_UNCERTAINTY, "selection", "there is no selection", _NO_ROPE),
+    *(
+        (f"robot.winches.{name}", "robot.winches.motor", "there is no motor to drive it", _NO_MOTOR)
+        for name in ("drum_diameter", "layers", "gear_ratio", "efficiency")
+    ),
+    ("robot.winches.motor", "robot.winches.drum_diameter", "there is no drum", _NO_DRUM),
     ("robot.winches", "workspace", "there is no workspace", _NO_WINCHES),
 )
 """Fields that another one has to be beside: what is wrong without it, and what is expected."""

@@ -84,6 +84,13 @@ class PlatformSection(Section):
         )
 
 
+class MotorSection(Section):
+    """The motor of a winch."""
+
+    torque: fields.Torque = config_field("Torque of a motor", expected="a torque such as '40 N*m'")
+    """Torque that the motor may give while it holds a load or slowly pulls it."""
+
+
 class WinchesSection(Section):
     """The winches, one for each cable and all alike."""
 
@@ -94,10 +101,28 @@ class WinchesSection(Section):
     """Where the cable comes from to its exit point: its winch, or the last sheave before that;
     tells the direction of that branch. With pulleys it comes from below."""
 
+    drum_diameter: fields.SheaveDiameter | None = config_field("Drum of a winch")
+    """Diameter of the drum at the bottom of its grooves."""
+    layers: Annotated[int, WholeNumber(1, 50)] = config_field("Layers on the drum", 1)
+    """Layers of rope on the drum at most; torque is that on the outermost."""
+    gear_ratio: fields.GearRatio = config_field("Gear ratio", 1.0)
+    """Turns of the motor for one of the drum."""
+    efficiency: fields.Efficiency = config_field("Efficiency of a winch", 1.0)
+    """Share of the motor's work that reaches the exit point: gear, drum and sheaves together."""
+    motor: MotorSection | None = None
+    """The motor of a winch."""
+
     def winches(self) -> Winches:
         """Return the winches."""
-        positions = None if self.positions is None else frozen_array(self.positions)
-        return Winches(self.tension_max, positions)
+        return Winches(
+            self.tension_max,
+            None if self.positions is None else frozen_array(self.positions),
+            self.drum_diameter,
+            self.layers,
+            self.gear_ratio,
+            self.efficiency,
+            None if self.motor is None else self.motor.torque,
+        )
 
 
 class RobotSection(Section):
