@@ -73,9 +73,10 @@ class PlatformModes:
 
 
 def modes_of(analysis: Analysis) -> PlatformModes | None:
-    """Return the modes at the governing pose, or with the optimum at the configured one.
+    """Return the modes at the governing pose, or where no rope is chosen with the optimum.
 
-    None where no cable holds it, or the inertia is not known.
+    That is at the configured pose, else at the worst of the workspace in the static load. None
+    where no cable holds it, or the inertia is not known.
     """
     density: FloatArray | float
     governing, ropes, pose = analysis.governing, analysis.ropes, analysis.pose
@@ -87,11 +88,12 @@ def modes_of(analysis: Analysis) -> PlatformModes | None:
     if ropes is not None:
         density = ropes.cable.linear_density_kg_per_m
         return _modes(ropes.worst, ropes.robot.platform, density, ropes.name, ropes.load_case)
-    if pose is None:
+    sizing = analysis.worst_sizing if pose is None else pose.sizing
+    if sizing is None:
         return None
-    statics = pose.sizing.statics
+    statics = sizing.statics
     density = statics.weight_N_per_m / STANDARD_GRAVITY_M_PER_S2
-    name = f"{1e3 * float(pose.sizing.diameter_m):.1f} mm of the configured family"
+    name = f"{1e3 * float(sizing.diameter_m):.1f} mm of the configured family"
     return _modes(statics, analysis.built.robot.platform, density, name, STATIC.name)
 
 
