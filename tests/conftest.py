@@ -7,11 +7,12 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from designer.arrays import FloatArray, frozen_array
+from designer.arrays import frozen_array
 from designer.cli import terminal
 from designer.io.config.schema import WorkspaceSection
 from designer.model.cable import Material
@@ -67,8 +68,8 @@ def unproved() -> Iterator[None]:
     """Studies that do not ask for a proof get none: it takes its time on every report."""
     made = WorkspaceSection.workspace
 
-    def without(section: WorkspaceSection, exit_points_m: FloatArray) -> Workspace:
-        workspace = made(section, exit_points_m)
+    def without(section: WorkspaceSection, *places: Any) -> Workspace:
+        workspace = made(section, *places)
         asks = "proof" in section.model_fields_set
         return workspace if asks else replace(workspace, proof_s=0.0)
 

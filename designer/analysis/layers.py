@@ -50,7 +50,7 @@ def layers_of(maps: WorkspaceMaps, usable: Usable) -> Layers | None:
     if "top" not in maps.shell or not sizes or workspace is None:
         return None
     plan = maps.shell["top"].position_m
-    solved = plan[..., 0].size * _HEIGHTS * len(sizes) * len(workspace.orientations.turns_rad)
+    solved = plan[..., 0].size * _HEIGHTS * len(sizes) * workspace.orientations.count
     most = _SOLVED if maps.study.robot.has_one_branch else _SEARCHED
     share = min(1.0, np.sqrt(most / solved))  # a coarser grid where there would be more to solve
     rings = np.linspace(0, len(plan) - 1, max(2, round(share * len(plan)))).round().astype(int)
@@ -81,8 +81,10 @@ def _utilisation(
     robot: Robot, workspace: Workspace, size: UsableSize, position_m: FloatArray
 ) -> FloatArray:
     largest = np.zeros(position_m.shape[:-1])
-    for turn_rad in workspace.orientations.turns_rad:
-        statics = solve_sagging(robot, Poses.at(position_m, turn_rad), size.cable)
+    turns = workspace.orientations.at(position_m.reshape(-1, 3))
+    for turn_rad in turns.swapaxes(0, 1):
+        poses = Poses.at(position_m, turn_rad.reshape(position_m.shape))
+        statics = solve_sagging(robot, poses, size.cable)
         serves = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
         used = statics.largest_tension_N / size.cable.allowable_tension_N
         largest = np.maximum(largest, np.where(serves, np.minimum(used, _BEYOND), _BEYOND))

@@ -69,7 +69,8 @@ class _Carried:
     outward: FloatArray
 
     def place_at(self, value: float) -> FloatArray:
-        return np.asarray(self.place + (value - self.at) * self.outward)
+        moved = np.asarray(self.place + (value - self.at) * self.outward)
+        return self.case.workspace.space.following(moved)
 
 
 _Changed = Callable[[CaseResult, float], tuple[Loaded, Workspace]]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+import numpy as np
+
 from designer import __version__
 from designer.analysis.analyse import Analysis
 from designer.analysis.carries import carries_dict
@@ -180,9 +182,12 @@ def _orientations(study: Study) -> Json | None:
     if study.workspace is None or study.robot.is_point_mass:
         return None
     orientations = study.workspace.orientations
+    law = orientations.law
     return {
-        "rotation_vectors": orientations.turns_rad,
+        "rotation_vectors": orientations.turns_rad if law is None else None,
         "range": orientations.range_rad,
+        "law": None if law is None else law.words,
+        "table": None if law is None or law.rows is None else np.hstack(law.rows),
     }
 
 

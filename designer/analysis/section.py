@@ -68,7 +68,7 @@ def _statics(analysis: Analysis, rings: int, spokes: int) -> Statics | None:
     positions = workspace.region.section_m(0.5, rings, spokes)
     if positions is None:
         return None
-    poses = Poses.at(positions, workspace.orientations.turns_rad[0])
+    poses = Poses.at(workspace.space.first(positions))
     return solve_sagging(analysis.built.robot, poses, qualities.cable.cable)
 
 

@@ -116,6 +116,8 @@ def sensitivities(case: CaseResult, efficiency: float, breaking_load_N: float) -
         why = f"Cables {cables} are used alike: where only one of them gains, there is no slope."
     ropes = [("", np.arange(case.loaded.robot.n_cables), case.loaded)]
     slopes, exits = _by_adjoint(ties, ropes, case.pose, case.workspace.region)
+    if slopes and case.workspace.orientations.law is not None:
+        slopes["region"] = _slope_of_sides(case)
     used = case.utilisation
     return Sensitivities(used, _named(used, figures, ropes, slopes), exits, why_not=why)
 
@@ -126,12 +128,10 @@ def group_sensitivities(
     """Return the slopes of each group of cables; none where no ropes for groups were found."""
     if workspace is None or not assignment.has_groups:
         return ()
-    return tuple(
-        _of_group(robot, workspace.region, assignment, g) for g in range(len(assignment.groups))
-    )
+    return tuple(_of_group(robot, workspace, assignment, g) for g in range(len(assignment.groups)))
 
 
-def _of_group(robot: Robot, region: Region, assignment: Assignment, g: int) -> Sensitivities:
+def _of_group(robot: Robot, workspace: Workspace, assignment: Assignment, g: int) -> Sensitivities:
     cables = Cables(tuple(rope.cable for rope in assignment.by_cable))
     ropes: list[_Mounted] = [
         (f"_{group.name}", np.array(group.cables) - 1, Loaded(STATIC, bare, *bare))
@@ -143,7 +143,9 @@ def _of_group(robot: Robot, region: Region, assignment: Assignment, g: int) -> S
     used = statics.cable_tension_N[0, of_group] / rope.cable.allowable_tension_N
     cable = int(of_group[used.argmax()])
     ties = utilisation_slopes(statics, cables.allowable_tension_N, cable + 1)
-    slopes, exits = _by_adjoint(ties, ropes, statics.poses, region)
+    slopes, exits = _by_adjoint(ties, ropes, statics.poses, workspace.region)
+    if slopes and workspace.orientations.law is not None:
+        slopes["region"] = np.nan  # the turn that goes with it is not among the slopes
     figures = rope.size.minimum_breaking_load_N, rope.efficiency
     named = _named(float(used.max()), figures, ropes, slopes)
     why = (
@@ -183,26 +185,17 @@ def _slopes_at(
 
 
 def _by_differences(case: CaseResult, figures: tuple[float, float]) -> Sensitivities:
-    loaded, place = case.loaded, case.verification.worst_place
-    side = np.zeros_like(place)
-    side[:3] = case.workspace.region.outward(place[:3])
+    loaded = case.loaded
 
     def slope(changed: Callable[[float], Loaded]) -> float:
         ends = [case.tension_N(changed(sign * _STEP)) for sign in (1.0, -1.0)]
         return (ends[0] - ends[1]) / (2.0 * _STEP * loaded.cable.allowable_tension_N)
 
-    def shifted(by: float) -> float:
-        verification = replace(case.verification, worst_place=place + by * side)
-        return (
-            replace(case, verification=verification).tension_N(loaded)
-            / loaded.cable.allowable_tension_N
-        )
-
     slopes = {
         "payload": slope(lambda by: with_payload(loaded, 1.0 + by)),
         "modulus": slope(lambda by: with_stiffness(loaded, 1.0 + by)),
         "linear_mass": slope(lambda by: with_density(loaded, 1.0 + by)),
-        "region": (shifted(_STEP) - shifted(-_STEP)) / (2.0 * _STEP) if side.any() else 0.0,
+        "region": _slope_of_sides(case),
     }
     exits = np.full((loaded.robot.n_cables, 3), np.nan)
     for cable, axis in np.ndindex(exits.shape):
@@ -213,6 +206,20 @@ def _by_differences(case: CaseResult, figures: tuple[float, float]) -> Sensitivi
     inputs = _named(case.utilisation, figures, ropes, slopes)
     exits = np.where(np.isfinite(exits), exits, np.nan)
     return Sensitivities(case.utilisation, inputs, exits, "differences", why)
+
+
+def _slope_of_sides(case: CaseResult) -> float:
+    """Return the slope of the utilisation as the sides of the region move outward [1/m]."""
+    space, place = case.workspace.space, case.verification.worst_place
+    side = np.zeros_like(place)
+    side[:3] = space.region.outward(place[:3])
+
+    def used(by: float) -> float:
+        moved = replace(case.verification, worst_place=space.following(place + by * side))
+        tension_N = replace(case, verification=moved).tension_N(case.loaded)
+        return tension_N / case.loaded.cable.allowable_tension_N
+
+    return (used(_STEP) - used(-_STEP)) / (2.0 * _STEP) if side.any() else 0.0
 
 
 def _named(

@@ -300,9 +300,9 @@ def _places(study: Study) -> FloatArray:
     position_m = np.concatenate(list(sampled))
     if study.robot.is_point_mass:
         return position_m
-    turns = workspace.orientations.turns_rad
+    turns, row = workspace.orientations.at(position_m), np.arange(len(position_m))
     # Neighbours of a low-discrepancy sequence lie far apart: turns in their order go everywhere.
-    return np.hstack([position_m, turns[np.arange(len(position_m)) % len(turns)]])
+    return np.hstack([position_m, turns[row, row % turns.shape[1]]])
 
 
 def slopes_at(problem: Problem, effects: Sequence[Effect], study: Study) -> FloatArray:

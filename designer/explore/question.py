@@ -241,12 +241,12 @@ def first_place(study: Study | None) -> FloatArray:
         return frozen_array(np.zeros(6))
     if study.pose is not None:
         return frozen_array(study.pose.place)
-    turn, middle = np.zeros(3), study.robot.exit_points_m.mean(axis=0)
+    middle = study.robot.exit_points_m.mean(axis=0)
     if study.workspace is not None:
         region = study.workspace.region
         middle = region.nearest(region.bounds_m.mean(axis=0)[None])[0]
-        turn = study.workspace.orientations.turns_rad[0]
-    return frozen_array(np.concatenate([middle, turn]))
+        return frozen_array(study.workspace.space.first(middle))
+    return frozen_array(np.concatenate([middle, np.zeros(3)]))
 
 
 # What is asked of a worker

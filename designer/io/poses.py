@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,10 @@ from designer.model.robot import Poses, Robot
 _OFF_PLANE = 1e-6
 """What counts as out of a planar robot's plane, over the extent of its exit points, or [rad]."""
 _OURS = (*POSITION, *ROTATION_VECTOR)
+_LOAD_CASE = "load_case"
+ErrorOf = Callable[[str, str], InputError]
+_OF_OPTION: ErrorOf = partial(InputError.at, "--poses")
+MOST_POSES = 50_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,23 +37,32 @@ class PoseTable:
         Its columns of numbers, in the order of the file.
     values : array (n_poses, n_names)
         What stands there; NaN for nothing in columns that are none of ours.
-    poses : Poses
-        The poses (n_poses).
+    places : array (n_poses, 3 or 6)
+        Positions, and rotation vectors where the file has them [m, rad].
+    load_cases : tuple of str
+        The load case that each pose is for, empty for all; none without that column.
     left_out : tuple of str
         Columns that hold texts.
     """
 
     names: tuple[str, ...]
     values: FloatArray
-    poses: Poses
+    places: FloatArray
+    load_cases: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
 
+    @property
+    def poses(self) -> Poses:
+        """The poses (n_poses)."""
+        return Poses.at(self.places)
 
-def read_poses(path: Path, robot: Robot) -> PoseTable:
+
+def read_poses(path: Path, robot: Robot, error_of: ErrorOf = _OF_OPTION) -> PoseTable:
     """Return the poses in a CSV file for a robot.
 
     Its columns are ``x_m, y_m, z_m``, and ``rx_rad, ry_rad, rz_rad`` (a rotation vector) for a
-    platform that turns; others are carried along.
+    platform that turns; ``load_case`` may name the load case that a pose is for; others are
+    carried along. ``error_of`` makes the error where the file cannot be opened.
 
     Raises
     ------
@@ -60,15 +74,17 @@ def read_poses(path: Path, robot: Robot) -> PoseTable:
         file = open_input(path)
     except (OSError, ValueError) as error:
         expected = "a CSV file with columns x_m, y_m, z_m"
-        raise InputError.at("--poses", f"{path}: {reason(error)}", expected) from None
+        raise error_of(f"{path}: {reason(error)}", expected) from None
     with file:
-        table = read_table(file, str(path))
+        table = read_table(file, str(path), MOST_POSES)
     columns = {column.name: column for column in table.columns}
     faults = [*table.faults, *_column_faults(table, columns)]
     for name in _OURS:
         faults += unit_faults(table, columns[name]) if name in columns else ()
     if not faults:
         faults = [*_cell_faults(table, [columns[name] for name in _OURS if name in columns])]
+    if not faults and table.n_rows > MOST_POSES:
+        faults.append(table.fault(None, "", f"{table.n_rows} poses", f"at most {MOST_POSES}"))
     if faults:
         raise InputError(faults)
     turns = ROTATION_VECTOR if ROTATION_VECTOR[0] in columns else ()
@@ -80,9 +96,17 @@ def read_poses(path: Path, robot: Robot) -> PoseTable:
     return PoseTable(
         tuple(column.name for column in columns_kept),
         np.stack([column.values for column in columns_kept], axis=1),
-        Poses.at(place),
-        tuple(column.name for column in table.columns if column.n_texts),
+        place,
+        _load_cases(columns[_LOAD_CASE], table.n_rows) if _LOAD_CASE in columns else (),
+        tuple(c.name for c in table.columns if c.n_texts and c.name != _LOAD_CASE),
     )
+
+
+def _load_cases(column: RawColumn, n_rows: int) -> tuple[str, ...]:
+    """Return what stands in each cell, a number as it is written shortest."""
+    texts = {cell.row: cell.text for cell in column.texts}
+    numbers = ("" if np.isnan(value) else f"{value:g}" for value in column.values)
+    return tuple(texts.get(row, number) for row, number in zip(range(n_rows), numbers, strict=True))
 
 
 def _column_faults(table: LogTable, columns: dict[str, RawColumn]) -> Iterator[Fault]:

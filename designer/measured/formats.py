@@ -23,6 +23,7 @@ import numpy as np
 from designer.documents.opened import open_input
 from designer.measured.table import (
     LARGEST_FILE_BYTES,
+    MOST_ALIKE,
     LogTable,
     RawColumn,
     Rows,
@@ -45,8 +46,8 @@ class _Format(NamedTuple):
     rows: Callable[[Any, BinaryIO], Rows]
 
 
-def read_table(file: BinaryIO, name: str) -> LogTable:
-    """Return the table in an open file, which messages call ``name``.
+def read_table(file: BinaryIO, name: str, most_texts: int = MOST_ALIKE) -> LogTable:
+    """Return the table in an open file, which messages call ``name``; see `table_of`.
 
     Raises
     ------
@@ -58,7 +59,7 @@ def read_table(file: BinaryIO, name: str) -> LogTable:
     file.seek(0)
     kind = next((kind for kind in _FORMATS if start.startswith(kind.start)), None)
     if kind is None:
-        table = table_of(text_rows(file, name, digest.update), name)
+        table = table_of(text_rows(file, name, digest.update), name, most_texts)
     else:
         content = file.read(LARGEST_FILE_BYTES + 1)
         if len(content) > LARGEST_FILE_BYTES:
@@ -66,7 +67,8 @@ def read_table(file: BinaryIO, name: str) -> LogTable:
             refuse(name, None, "the file is too large", limit)
         digest.update(content)
         library = _library(kind.module, kind.extra, kind.called, name)
-        table = table_of(_checked(kind, kind.rows(library, io.BytesIO(content)), name), name)
+        rows = _checked(kind, kind.rows(library, io.BytesIO(content)), name)
+        table = table_of(rows, name, most_texts)
     return replace(table, sha256=digest.hexdigest())
 
 

@@ -147,8 +147,10 @@ def text_rows(file: BinaryIO, name: str, see: Callable[[bytes], None]) -> Rows:
     return _rows(_lines(file, name, see), name)
 
 
-def table_of(rows: Rows, name: str) -> LogTable:
+def table_of(rows: Rows, name: str, most_texts: int = MOST_ALIKE) -> LogTable:
     """Return the table of such rows, names of columns first; messages call the file ``name``.
+
+    Of a column so many texts are kept.
 
     Raises
     ------
@@ -157,7 +159,7 @@ def table_of(rows: Rows, name: str) -> LogTable:
     """
     head_line, names = _head(rows, name)
     units, units_line, rows = _units(rows, len(names))
-    columns = [_Filling() for _ in names]
+    columns = [_Filling(most_texts) for _ in names]
     lines: list[int] = []
     misfits: list[tuple[int, int]] = []
     # Few enough that their text takes no memory to speak of, many enough for whole columns.
@@ -335,6 +337,7 @@ def _float(cell: str) -> float:
 class _Filling:
     """A column that grows block by block."""
 
+    most_texts: int
     blocks: list[FloatArray] = field(default_factory=list)
     n_texts: int = 0
     texts: list[TextCell] = field(default_factory=list)
@@ -346,7 +349,7 @@ class _Filling:
             self.first_time = times[0]
         self.blocks.append(values)
         self.n_texts += len(texts)
-        self.texts += texts[: MOST_ALIKE - len(self.texts)]
+        self.texts += texts[: self.most_texts - len(self.texts)]
 
     def column(self, name: str, unit: str) -> RawColumn:
         values = np.concatenate(self.blocks) if self.blocks else np.empty(0)

@@ -27,6 +27,7 @@ from designer.arrays import FloatArray
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.region import Region
 from designer.model.robot import Platform, Robot
+from designer.model.space import Orientations
 
 AIR_DENSITY_KG_PER_M3 = 1.25
 FIRST_WINDS = 8
@@ -210,6 +211,8 @@ class LoadCase:
         Instead of those of the selection.
     region : Region or None
         Instead of that of the workspace.
+    orientations : Orientations or None
+        Those of such a region, instead of the workspace's.
     """
 
     name: str
@@ -225,6 +228,7 @@ class LoadCase:
     safety_factor: checked.Factor | None = None
     termination_efficiency: checked.Efficiency | None = None
     region: Region | None = None
+    orientations: Orientations | None = None
     inertia_kg_m2: Annotated[FloatArray, checked.Shape((3, 3))] | None = None
 
     def __post_init__(self) -> None:

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from designer import checked
-from designer.arrays import FloatArray, IntArray, finite_array, frozen_array
+from designer.arrays import BoolArray, FloatArray, IntArray, finite_array, frozen_array
 from designer.model.region import Region
+from designer.model.turning import Following
 
 _APART = 1e-7
 _AT_AN_END = 1.0 / 3.0
@@ -35,10 +36,13 @@ class Orientations:
     range_rad : array (2, 3) or None
         Lowest and highest components of the rotation vector, where everything between them is
         asked for [rad]; ``turns_rad`` are then samples of it.
+    law : Following or None
+        Orientations that depend on the position, instead of all these.
     """
 
     turns_rad: checked.Points = field(default_factory=lambda: frozen_array(np.zeros((1, 3))))
     range_rad: Annotated[FloatArray, checked.Shape((2, 3))] | None = None
+    law: Following | None = None
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
@@ -64,12 +68,18 @@ class Orientations:
     @property
     def count(self) -> int:
         """Number of orientations that every position is tried in."""
-        return len(self.turns_rad)
+        return len(self.turns_rad) if self.law is None else self.law.count
 
     @property
     def is_level(self) -> bool:
         """Whether the platform is never turned."""
-        return self.range_rad is None and not self.turns_rad.any()
+        return self.law is None and self.range_rad is None and not self.turns_rad.any()
+
+    def at(self, positions_m: FloatArray) -> FloatArray:
+        """Return the rotation vectors that positions (n, 3) are tried in, (n, count, 3) [rad]."""
+        if self.law is None:
+            return np.broadcast_to(self.turns_rad, (len(positions_m), *self.turns_rad.shape))
+        return self.law.turns_rad(positions_m)
 
 
 def turn_of(place: FloatArray) -> FloatArray:
@@ -123,6 +133,12 @@ class Space:
         return np.hstack([self.region.bounds_m, np.zeros((2, 3)) if turns is None else turns])
 
     @property
+    def is_free(self) -> BoolArray:
+        """Which coordinates (n_coordinates,) are no function of the others."""
+        is_turn = np.arange(self.n_coordinates) >= 3
+        return np.asarray(~is_turn | (self.orientations.law is None))
+
+    @property
     def is_discrete(self) -> bool:
         """Whether there is nothing between the places."""
         return self.region.is_discrete and self.orientations.range_rad is None
@@ -131,8 +147,13 @@ class Space:
         """Return positions (n, 3) in all orientations (n · count, n_coordinates), in groups."""
         if self.orientations.is_level:
             return positions_m
-        turns = np.tile(self.orientations.turns_rad, (len(positions_m), 1))
+        turns = self.orientations.at(positions_m).reshape(-1, 3)
         return np.hstack([np.repeat(positions_m, self.orientations.count, axis=0), turns])
+
+    def first(self, positions_m: FloatArray) -> FloatArray:
+        """Return positions (..., 3), each in the first of its orientations (..., 6) [m, rad]."""
+        turns = self.orientations.at(positions_m.reshape(-1, 3))[:, 0]
+        return np.concatenate([positions_m, turns.reshape(positions_m.shape)], axis=-1)
 
     def landmarks(self) -> FloatArray:
         """Return the landmarks of the region, in each orientation that may matter.
@@ -143,13 +164,11 @@ class Space:
         if self.is_discrete:
             return np.empty((0, self.n_coordinates))
         positions = self.region.border().landmarks_m()
-        if self.orientations.is_level:
-            return positions
-        turns = self.orientations.turns_rad
-        if self.orientations.range_rad is not None:
-            low, high = self.orientations.range_rad
-            corners = product(*zip(low, high, strict=True))
-            turns = np.unique([*corners, 0.5 * (low + high)], axis=0)
+        if self.orientations.range_rad is None:
+            return self.places(positions)
+        low, high = self.orientations.range_rad
+        corners = product(*zip(low, high, strict=True))
+        turns = np.unique([*corners, 0.5 * (low + high)], axis=0)
         repeated = np.repeat(positions, len(turns), axis=0)
         return np.hstack([repeated, np.tile(turns, (len(positions), 1))])
 
@@ -184,7 +203,7 @@ class Space:
         size = np.where(high > low, high - low, 1.0)
         step = np.clip((places[:, :3] - low) / size * side, 0, side - 1)
         turn = np.zeros(len(places))
-        if places.shape[1] > 3:
+        if places.shape[1] > 3 and self.orientations.law is None:
             bounds = self.orientations.range_rad
             if bounds is not None:
                 turn = (places[:, 3:] > bounds.mean(axis=0)) @ [1.0, 2.0, 4.0]
@@ -203,9 +222,8 @@ class Space:
         if self.orientations.range_rad is not None:
             low, high = self.orientations.range_rad
             return beyond, not ((turn >= low - _APART) & (turn <= high + _APART)).all()
-        rotations = Rotation.from_rotvec(
-            np.array(self.orientations.turns_rad)
-        )  # read-only: refused
+        turns = self.orientations.at(position[None])[0]
+        rotations = Rotation.from_rotvec(np.array(turns))  # read-only: refused
         gap = (rotations.inv() * Rotation.from_rotvec(np.array(turn))).magnitude()
         return beyond, not (gap < _APART).any()
 
@@ -215,4 +233,14 @@ class Space:
         turn = places[..., 3:]
         if self.orientations.range_rad is not None:
             turn = np.clip(turn, *self.orientations.range_rad)
-        return np.concatenate([position, turn], axis=-1)
+        return self.following(np.concatenate([position, turn], axis=-1))
+
+    def following(self, places: FloatArray) -> FloatArray:
+        """Return places (..., n_coordinates) turned as a law has it there, by the least change."""
+        if self.orientations.law is None:
+            return places
+        flat = places.reshape(-1, 6)
+        turns = self.orientations.at(flat[:, :3])
+        nearest = np.abs(turns - flat[:, None, 3:]).sum(axis=2).argmin(axis=1)
+        followed = np.hstack([flat[:, :3], turns[np.arange(len(flat)), nearest]])
+        return followed.reshape(places.shape)

@@ -67,7 +67,10 @@ class Workspace(checked.Value):
 
     def of_case(self, case: LoadCase) -> Workspace:
         """Return the workspace of a load case, which may have a region of its own."""
-        return self if case.region is None else replace(self, region=case.region)
+        if case.region is None:
+            return self
+        orientations = case.orientations or self.orientations
+        return replace(self, region=case.region, orientations=orientations)
 
     def positions_m(self) -> Iterator[FloatArray]:
         """Yield the sample positions in pieces that have about `CHUNK` places at most (n, 3) [m].

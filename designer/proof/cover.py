@@ -89,10 +89,14 @@ def halves(low: FloatArray, high: FloatArray, cut: IntArray) -> tuple[FloatArray
 
 
 def covers_of(space: Space) -> list[Cover]:
-    """Return what covers a space: one for each orientation of a list, one for a range."""
+    """Return what covers a space: one for each orientation of a position, one for a range."""
     frame, ends = space.region.frame(), space.orientations.range_rad
     assert frame is not None  # asked before, by `designer.proof.encloser.why_not`
     made = []
+    if space.orientations.law is not None:  # of listed positions, each a box without size
+        turns = space.orientations.at(frame.low).swapaxes(0, 1)
+        boxes = [np.hstack([frame.low, turn]) for turn in turns]
+        return [Cover(frame, box, box, np.zeros(3)) for box in boxes]
     for turn in space.orientations.turns_rad[: 1 if ends is not None else None]:
         low, high = frame.low, frame.high
         if ends is not None:

@@ -14,8 +14,8 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.kernel.calling import plain, share_out
 from designer.model.cable import Cable
-from designer.model.region import Region
 from designer.model.robot import Poses, Robot
+from designer.model.space import Space
 from designer.proof.cover import Cover
 from designer.statics.geometry import upright_exit_points_m, upright_poses
 from designer.statics.inverse import Statics, solve_sagging
@@ -29,12 +29,14 @@ _MOST_FOLLOWED = 0.25
 """Share of its pull by which that of a cable may change in half a box by choice."""
 
 
-def why_not(robot: Robot, region: Region) -> str:
-    """Return why nothing can be proved of a robot in a region; empty where something can."""
+def why_not(robot: Robot, space: Space) -> str:
+    """Return why nothing can be proved of a robot in a space; empty where something can."""
     if robot.pulley_radius_m != 0.0:
         return "cables that run over pulleys are not enclosed"
-    if region.frame() is None:
+    if space.region.frame() is None:
         return "a region of this kind is not covered by boxes"
+    if space.orientations.law is not None and not space.region.is_discrete:
+        return "orientations that follow the position are not enclosed"
     return ""
 
 

@@ -113,7 +113,7 @@ def prove(
         Called with how much of the budget is spent; the rest is the most that is still to come. The
         share of the volume says nothing of that, since the last of it may take the most.
     """
-    reason = why_not(robot, space.region)
+    reason = why_not(robot, space)
     if reason:
         return Proof("off", found=value, reason=reason)
     search = _BranchAndBound(robot, cable, covers_of(space), value, within, enough)

@@ -69,7 +69,7 @@ def servable(robot: Robot, space: Space, budget: Budget) -> Servable | None:
     That is over pulleys, where the orientation has a range, and without a load.
     """
     load_N = float(np.linalg.norm(robot.loads_N()[0, :3]))
-    if why_not(robot, space.region) or space.orientations.range_rad is not None or load_N == 0.0:
+    if why_not(robot, space) or space.orientations.range_rad is not None or load_N == 0.0:
         return None
     size = float(np.ptp(np.vstack([robot.exit_points_m, space.region.bounds_m]), axis=0).max())
     density = _LIGHT * load_N / size / STANDARD_GRAVITY_M_PER_S2

@@ -136,6 +136,8 @@ def described_orientations(orientations: Orientations) -> str:
     """Return in words how the platform is turned at every position."""
     if orientations.is_level:
         return "level only"
+    if orientations.law is not None:
+        return orientations.law.words
     turns = np.degrees(orientations.turns_rad)
     if orientations.range_rad is None:
         listed = "; ".join(fmt.degrees(turn) for turn in turns[:_MOST_LISTED])
@@ -153,6 +155,8 @@ def orientation_words(study: Study) -> tuple[str, str] | None:
     how = f"{orientations.count} of them at each sample, the worst searched between"
     if orientations.is_level:
         how = "the platform was not turned"
+    elif orientations.law is not None:
+        how = ""
     elif orientations.range_rad is None:
         how = "rotation vectors, the worst of them counts" if orientations.count > 1 else ""
     return described_orientations(orientations), how

@@ -51,6 +51,7 @@ def size_poses(
     material: Material | MaterialsByPose,
     *,
     seeks_better: bool = True,
+    is_quick: bool = False,
 ) -> Sizing:
     """Return the thinnest cable of the family for each pose (...).
 
@@ -58,10 +59,11 @@ def size_poses(
     cable is at the allowable stress, by the compiled Newton of `designer.kernel.square`; with more
     cables than degrees of freedom, over all internal forces, by `designer.kernel.redundant`. Where
     another branch might be thinner, `designer.kernel.search` tries more of them, unless
-    it is not to ``seeks_better`` than what was found first.
+    it is not to ``seeks_better`` than what was found first; or where nothing was found at first,
+    unless it ``is_quick``.
     """
     task = _task(robot, material, None)
-    solution, run = solve_task(robot, poses, task, seeks_better=seeks_better)
+    solution, run = solve_task(robot, poses, task, seeks_better=seeks_better, is_quick=is_quick)
     area = solution.weight_N_per_m / (STANDARD_GRAVITY_M_PER_S2 * material.density_kg_per_m3)
     massless_area = solution.massless_tension_N / material.allowable_stress_Pa
     shape = poses.shape

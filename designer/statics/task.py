@@ -83,12 +83,13 @@ class Task:
 
 
 def solve_task(
-    robot: Robot, poses: Poses, task: Task, *, seeks_better: bool = True
+    robot: Robot, poses: Poses, task: Task, *, seeks_better: bool = True, is_quick: bool = False
 ) -> tuple[Solution, PulleyRun]:
     """Solve poses (...), flattened to one axis.
 
-    Other branches are tried where nothing is found and, if it ``seeks_better``, where one may be
-    better than what is. Where none keeps the largest sag, the answer is one that does not.
+    Other branches are tried where nothing is found, unless it ``is_quick``, and, if it
+    ``seeks_better``, where one may be better than what is. Where none keeps the largest sag, the
+    answer is one that does not.
     """
     checkpoint()
     flat = poses.flat
@@ -104,7 +105,8 @@ def solve_task(
     hangs = np.zeros(count, dtype=np.bool_)
     if limits_sag and not seeks_better:
         hangs = _let_hang(robot, flat, solution, run, task, seeks_better)
-    _try_other_branches(robot, flat, solution, run, task, ~hangs)
+    if not is_quick:
+        _try_other_branches(robot, flat, solution, run, task, ~hangs)
     if limits_sag:
         _let_hang(robot, flat, solution, run, task, seeks_better, ~hangs)
     if robot.pulley_radius_m == 0.0:

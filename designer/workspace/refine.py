@@ -193,6 +193,7 @@ class _PoseSearch:
     def __init__(self, space: Space, demand: Demand, effort: Effort, count: int) -> None:
         self._space, self._demand, self._effort, self._count = space, demand, effort, count
         self._size = np.ptp(space.bounds, axis=0)
+        self._is_free = space.is_free
         self._best = np.empty((count, 0))
         self._best_places = np.empty((count, 0, len(self._size)))
         self._has_border = np.zeros(count, dtype=np.bool_)
@@ -335,7 +336,8 @@ class _PoseSearch:
 
     def _is_apart(self, places: FloatArray, at: FloatArray) -> BoolArray:
         """Tell which places (n, n_places, n_coordinates) are far enough from others (n, …)."""
-        return np.asarray((np.abs(places - at[:, None]) > _APART * self._size).any(axis=2))
+        is_far = np.abs(places - at[:, None]) > _APART * self._size
+        return np.asarray((is_far & self._is_free).any(axis=2))
 
     def _are_close_to_best(self, climbs: Climbs) -> BoolArray:
         """Tell which are among the highest of their extreme, and hardly below the best."""
@@ -370,7 +372,7 @@ class _PoseSearch:
             highest[kind[first]] = first
             chosen.append(first)
             apart = np.abs(climbs.at[remaining] - climbs.at[highest[kind[remaining]]]) / size
-            remaining = remaining[~(apart < 3e-3).all(axis=1)]
+            remaining = remaining[~((apart < 3e-3) | ~self._is_free).all(axis=1)]
         return climbs.part(np.sort(np.concatenate(chosen)))
 
     def _climb(self, climbs: Climbs, tolerance: float, *, slides: bool = False) -> None:
@@ -426,7 +428,7 @@ class _PoseSearch:
         """
         size = np.where(self._size > 0.0, self._size, 1.0)
         reach = climbs.radius[:, None, None]
-        offsets = (trials - climbs.at[:, None]) / size
+        offsets = np.where(self._is_free, (trials - climbs.at[:, None]) / size, 0.0)
         outside = np.isneginf(values)[..., None]
         normal = np.where(outside, 0.0, offsets).sum(axis=1) / (~outside).sum(axis=1)
         normal -= np.where(outside, offsets, 0.0).sum(axis=1) / outside.sum(axis=1)

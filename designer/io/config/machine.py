@@ -16,6 +16,7 @@ from designer.io.config.regions import AnyRegion, Box, only_one_of
 from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import Region
 from designer.model.robot import Platform, Robot
+from designer.model.space import Orientations
 from designer.model.winches import Winches
 
 _points = list_of(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
@@ -298,7 +299,12 @@ class LoadCaseSection(Section):
     region: AnyRegion | None = None
     """Where the platform is in this case, instead of the workspace's region."""
 
-    def load_case(self, cable: CableSection | GradeCableSection, region: Region | None) -> LoadCase:
+    def load_case(
+        self,
+        cable: CableSection | GradeCableSection,
+        region: Region | None,
+        orientations: Orientations | None,
+    ) -> LoadCase:
         """Return the load case, on cables of a family, over its region."""
         return LoadCase(
             name=self.name,
@@ -315,4 +321,5 @@ class LoadCaseSection(Section):
             safety_factor=self.safety_factor,
             termination_efficiency=self.termination_efficiency,
             region=region,
+            orientations=orientations,
         )

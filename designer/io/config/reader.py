@@ -17,13 +17,15 @@ from designer.errors import InputError
 from designer.io.config.checks import all_faults
 from designer.io.config.columns import ColumnSection
 from designer.io.config.effects import read_effects
-from designer.io.config.machine import CableSection
-from designer.io.config.regions import OrientationSection, RegionSection
+from designer.io.config.machine import CableSection, LoadCaseSection
+from designer.io.config.places import Places, places_of
+from designer.io.config.regions import OrientationSection
 from designer.io.config.schema import SelectionSection, StudySection
 from designer.model.cable import Material
 from designer.model.machine import Surroundings
 from designer.model.region import Region
 from designer.model.robot import Robot
+from designer.model.space import Orientations
 from designer.plugins.find import Plugins, find_plugins
 from designer.study import DeclaredEffect, Entry, GradeFamily, Study, StudySource
 from designer.units import DENSITY, NUMBER, STRESS, Dimension, format_SI
@@ -74,7 +76,8 @@ def study_of(
     entries = all_entries(section, document.root)
     declared = read_effects(section.effects, robot.n_cables, known.by_id).effects
     entries += _effect_entries(declared, document.root, known, robot.n_cables)
-    pose, workspace, selection = section.pose, section.workspace, section.selection
+    pose, selection = section.pose, section.selection
+    places = places_of(section, document, robot, material)
     measurements, uncertainty = section.measurements, section.uncertainty
     lines = {path_text(keys): node.line for keys, node in document.root.walk()}
     given = _with_family(tuple(entries), material, family)
@@ -84,10 +87,10 @@ def study_of(
         material=material,
         source=StudySource(path, document.sha256, given, lines),
         pose=None if pose is None else pose.poses(),
-        workspace=None if workspace is None else workspace.workspace(robot.exit_points_m),
+        workspace=places.workspace,
         selection=None if selection is None else selection.selection(),
         load_cases=tuple(
-            case.load_case(section.cable, _case_region(document, index, robot, case.region))
+            case.load_case(section.cable, *_case_places(document, index, robot, case, places))
             for index, case in enumerate(section.load_cases)
         ),
         catalogues=tuple(folder / name for name in section.catalogues),
@@ -145,14 +148,21 @@ def _with_family(
     return tuple(replace(e, value_SI=meaning.get(e.field, e.value_SI)) for e in entries)
 
 
-def _case_region(
-    document: Document, index: int, robot: Robot, section: RegionSection | None
-) -> Region | None:
-    """Return the region of a load case; a fault where nothing is left of it."""
-    if section is None:
-        return None
+def _case_places(
+    document: Document, index: int, robot: Robot, section: LoadCaseSection, places: Places
+) -> tuple[Region | None, Orientations | None]:
+    """Return the region of a load case, and orientations that belong to it; None for the study's.
+
+    A fault where nothing is left of it, or a list has poses for the case as well.
+    """
+    of_list = places.of_cases.get(section.name, (None, None))
+    if section.region is None:
+        return of_list
+    if of_list[0] is not None:
+        problem = "the list of workspace.poses names load cases already"
+        raise InputError([document.fault(("load_cases", index, "region"), problem, "one of them")])
     try:
-        return section.over(robot.exit_points_m)
+        return section.region.over(robot.exit_points_m), None
     except ValueError as error:  # QhullError is one
         place = ("load_cases", index, "region")
         raise InputError([document.fault(place, str(error), "a region that has a size")]) from None

@@ -111,6 +111,26 @@ class OrientationSection(Section):
         return rotation_vector_rad(self.rotation_vector, self.quaternion, self.euler)
 
 
+class FollowingSection(OrientationSection):
+    """How the platform is turned at every position: fixed, or by a law that the position enters."""
+
+    toward: fields.Point | None = config_field("Point that the platform faces")
+    """Point that an axis of the platform is turned toward, wherever the platform is."""
+    axis: fields.Direction = config_field("Axis that faces it", (0.0, 0.0, 1.0))
+    """That axis, in the platform's frame; the turn is the shortest that brings it there."""
+    table: fields.Text | None = config_field("Table of orientations")
+    """A CSV file with x_m, y_m, z_m and rx_rad, ry_rad, rz_rad, relative to this file; between
+    its rows the orientation is interpolated."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_list(cls, given: object) -> object:
+        if isinstance(given, dict) and given.get("axis") and not given.get("toward"):
+            raise refusal("the axis has nothing to face", "toward: [x, y, z] beside it")
+        forms = (*FORMS, "toward", "table")
+        return {"rotation_vector": given} if isinstance(given, list) else only_one_of(given, forms)
+
+
 class OrientationRangeSection(Section):
     """Components of the rotation vector between two ends each; zero where left out."""
 

@@ -318,6 +318,10 @@ def _vectors(parts: Parts, origin: FloatArray, size: float) -> Iterator[tuple[st
     ends = parts.array("workspace.region.rectangle")
     if ends is not None:
         yield "workspace.region.rectangle", np.column_stack([ends, [origin[2]] * 2]) - origin
+    turned = parts.read("workspace.orientation")
+    if turned is not None and turned.toward is not None:
+        yield "workspace.orientation.toward", np.array([turned.toward]) - origin
+        yield "workspace.orientation.axis", np.array([turned.axis]) * size
     force = parts.array("robot.platform.wrench.force")
     if force is not None and force.any():
         yield "robot.platform.wrench.force", force[None] * size / np.linalg.norm(force)
@@ -334,13 +338,14 @@ def _turns(parts: Parts) -> Iterator[tuple[str, FloatArray]]:
     pose = parts.read("pose")
     if pose is not None:
         yield "pose", pose.turn_rad[None]
-    single, several, between = (parts.read(f"workspace.{kind}") for kind in ORIENTATION_KINDS)
+    single, several, *ranges = (parts.read(f"workspace.{kind}") for kind in ORIENTATION_KINDS)
     if single is not None:
         yield "workspace.orientation", single.turn_rad[None]
     if several is not None:
         yield "workspace.orientations", np.array([section.turn_rad for section in several])
-    if between is not None:
-        yield "workspace.orientation_range", between.bounds_rad
+    for kind, between in zip(ORIENTATION_KINDS[2:], ranges, strict=True):
+        if between is not None:
+            yield f"workspace.{kind}", between.bounds_rad
     moment = parts.array("robot.platform.wrench.moment")
     if moment is not None and moment.any():
         yield "robot.platform.wrench.moment", moment[None] / np.linalg.norm(moment)

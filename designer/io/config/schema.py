@@ -30,7 +30,7 @@ from designer.io.config.machine import ConfiguredCable, LoadCaseSection, RobotSe
 from designer.io.config.uncertainty import UncertaintySection
 from designer.model.duty import RUNNING_ROPE, DutyClass
 from designer.model.measurements import LogColumn, Measurements, Reading
-from designer.model.region import Sampling
+from designer.model.region import Region, Sampling
 from designer.model.robot import Poses
 from designer.model.space import Orientations
 from designer.model.workspace import SAG_MAX, HangsBelow, Workspace
@@ -67,7 +67,8 @@ Groups = Annotated[
 ]
 
 
-ORIENTATION_KINDS = ("orientation", "orientations", "orientation_range")
+ORIENTATION_KINDS = ("orientation", "orientations", "orientation_range", "orientation_free")
+_PLACES = ("region", "poses")
 TurnList = Annotated[
     tuple[regions.OrientationSection, ...],
     fields.list_of(1, 100, "1 to 100 orientations such as [0, 0, 10 deg]"),
@@ -110,10 +111,11 @@ class PoseSection(Section):
 class WorkspaceSection(Section):
     """Which poses the cable must serve."""
 
-    region: regions.AnyRegion = config_field(
-        expected="one of {prism, z}, {box}, {points} and {rectangle, z}"
-    )
+    region: regions.AnyRegion | None = None
     """Where the platform works: one of prism, box, points and rectangle."""
+    poses: fields.Text | None = config_field("Poses to serve")
+    """Instead of a region a table of poses, relative to this file: x_m, y_m, z_m, for a platform
+    that turns rx_rad, ry_rad, rz_rad, and load_case where a pose is for one of them."""
     samples: Annotated[int, fields.WholeNumber(1, MOST_SAMPLES)] = 20_000
     """Number of positions of the region that are tried."""
     sampling: Sampling = config_field("Kind of samples", "low_discrepancy")
@@ -131,23 +133,30 @@ class WorkspaceSection(Section):
     given; of the configured cable only if given. The word none lifts it."""
     proof: fields.ProofTime = config_field("Time for the proof", 20.0)
     """How long to try to prove that the chosen rope holds in all poses; 0 for not at all."""
-    orientation: regions.OrientationSection | None = None
-    """How the platform is turned at every position."""
+    orientation: regions.FollowingSection | None = None
+    """How the platform is turned at every position: fixed, toward a point, or as a table has
+    it."""
     orientations: TurnList | None = None
     """Several orientations, all of them asked for at every position."""
     orientation_range: regions.OrientationRangeSection | None = None
     """All rotation vectors between two ends a component, zero where left out, asked for at
     every position."""
+    orientation_free: regions.OrientationRangeSection | None = None
+    """As orientation_range, but the platform may choose: a position is served if some
+    orientation serves. The one that needs the thinnest cable is taken."""
 
     @model_validator(mode="before")
     @classmethod
-    def _one_kind_of_orientation(cls, value: object) -> object:
+    def _is_of_one_kind(cls, value: object) -> object:
+        if isinstance(value, dict) and not any(value.get(name) for name in _PLACES):
+            raise fields.refusal("there is nothing to serve", "region or poses")
+        value = regions.only_one_of(value, _PLACES, "the workspace")
         return regions.only_one_of(value, ORIENTATION_KINDS, "the workspace")
 
-    def workspace(self, exit_points_m: FloatArray) -> Workspace:
-        """Return the workspace over these exit points (n_cables, 3) [m]."""
+    def workspace(self, region: Region, orientations: Orientations) -> Workspace:
+        """Return the workspace over a region, in these orientations."""
         return Workspace(
-            region=self.region.over(exit_points_m),
+            region=region,
             samples=self.samples,
             sampling=self.sampling,
             seed=self.seed,
@@ -157,10 +166,11 @@ class WorkspaceSection(Section):
             sag_max=self.sag,
             family_sag_max=self.sag if "sag" in self.model_fields_set else None,
             proof_s=self.proof,
-            orientations=self._orientations(),
+            orientations=orientations,
         )
 
-    def _orientations(self) -> Orientations:
+    def fixed_orientations(self) -> Orientations:
+        """Return the orientations, where no law has them."""
         if self.orientation_range is not None:
             return Orientations.within(*self.orientation_range.bounds_rad)
         turned = self.orientations or ((self.orientation,) if self.orientation else ())

@@ -1,0 +1,131 @@
+"""Which poses a study asks for: its region or its list, and how the platform is turned there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from designer.arrays import FloatArray, frozen_array
+from designer.documents.document import Document, Keys
+from designer.errors import InputError
+from designer.io.config.schema import ORIENTATION_KINDS, StudySection, WorkspaceSection
+from designer.io.poses import PoseTable, read_poses
+from designer.model.cable import Material
+from designer.model.point_list import PointList
+from designer.model.region import Region
+from designer.model.robot import Robot
+from designer.model.space import Orientations
+from designer.model.turning import EachPose, Toward, TurnTable
+from designer.model.workspace import Workspace
+from designer.workspace.best_turns import BestTurns
+
+Listed = tuple[Region, Orientations]
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """The workspace of a study, and what of a list of poses is for one load case alone."""
+
+    workspace: Workspace | None
+    of_cases: Mapping[str, Listed] = field(default_factory=dict)
+
+
+def places_of(
+    section: StudySection, document: Document, robot: Robot, material: Material
+) -> Places:
+    """Return which poses a study asks for.
+
+    Raises
+    ------
+    InputError
+        If a table that it names cannot be read, or does not fit the rest.
+    """
+    workspace = section.workspace
+    if workspace is None:
+        return Places(None)
+    build = _Places(document, robot, material)
+    if workspace.region is not None:
+        region = workspace.region.over(robot.exit_points_m)
+        return Places(workspace.workspace(region, build.orientations(workspace, region)))
+    return build.listed(workspace, [case.name for case in section.load_cases])
+
+
+@dataclass(frozen=True, slots=True)
+class _Places:
+    document: Document
+    robot: Robot
+    material: Material
+
+    def _error(self, keys: Keys, problem: str, expected: str = "") -> InputError:
+        return InputError([self.document.fault(keys, problem, expected)])
+
+    def _table(self, keys: Keys, name: str) -> PoseTable:
+        path = Path(self.document.name).parent / name
+        return read_poses(path, self.robot, partial(self._error, keys))
+
+    def orientations(self, section: WorkspaceSection, region: Region) -> Orientations:
+        """Return how the platform is turned over a region."""
+        single, free = section.orientation, section.orientation_free
+        if free is not None:
+            ends = frozen_array(free.bounds_rad)
+            law = BestTurns(self.robot, self.material, region, ends, section.hangs_below)
+            return Orientations(law=law)
+        if single is not None and single.toward is not None:
+            return Orientations(law=Toward(frozen_array(single.toward), frozen_array(single.axis)))
+        if single is not None and single.table is not None:
+            return Orientations(law=self._turn_table(single.table))
+        return section.fixed_orientations()
+
+    def _turn_table(self, name: str) -> TurnTable:
+        keys = ("workspace", "orientation", "table")
+        places = self._table(keys, name).places
+        if places.shape[1] < 6:
+            expected = "the columns rx_rad, ry_rad and rz_rad"
+            raise self._error(keys, f"{name} has no orientations", expected)
+        if len(places) > MOST_ROWS:
+            raise self._error(keys, f"{name} has {len(places)} rows", f"at most {MOST_ROWS}")
+        if len(np.unique(places[:, :3], axis=0)) < len(places):
+            problem = f"{name} has a position in two rows"
+            raise self._error(keys, problem, "one orientation for each position")
+        position_m, turn_rad = (frozen_array(part) for part in np.hsplit(places, 2))
+        return TurnTable(position_m, turn_rad, name)
+
+    def listed(self, section: WorkspaceSection, cases: list[str]) -> Places:
+        """Return a list of poses, and what of it is for one load case alone."""
+        keys = ("workspace", "poses")
+        assert section.poses is not None
+        table = self._table(keys, section.poses)
+        if table.places.shape[1] == 6:
+            for kind in ORIENTATION_KINDS:
+                if getattr(section, kind) is not None:
+                    problem = f"{section.poses} has orientations of its own"
+                    raise self._error(("workspace", kind), problem, "one of the two")
+        owner = np.array(table.load_cases or [""] * len(table.places))
+        strangers = sorted({*owner.tolist()} - {"", *cases})
+        if strangers:
+            problem = f"{section.poses} has poses for '{strangers[0]}', which is no load case"
+            raise self._error(keys, problem, f"one of {', '.join(cases) or 'none: there are none'}")
+        every = self._poses(section, table.places)
+        of_cases = {}
+        for name in cases if (owner != "").any() else ():
+            is_own = (owner == name) | (owner == "")
+            if not is_own.any():
+                raise self._error(keys, f"{section.poses} has no pose for load case '{name}'")
+            of_cases[name] = self._poses(section, table.places[is_own])
+        return Places(section.workspace(*every), of_cases)
+
+    def _poses(self, section: WorkspaceSection, places: FloatArray) -> Listed:
+        positions, turns = places[:, :3], places[:, 3:]
+        region = PointList(frozen_array(np.unique(positions, axis=0)))
+        if not turns.size:
+            return region, self.orientations(section, region)
+        is_level = not turns.any()
+        return region, Orientations(law=None if is_level else EachPose.of(positions, turns))
+
+
+MOST_ROWS = 1000
+"""Of a table of orientations: each costs time at every pose."""

@@ -1,0 +1,159 @@
+"""Where the platform may choose its orientation: the one that needs the thinnest cable.
+
+It is sought at some positions of the region and interpolated between them, as a controller would
+do it: a law that has jumps could not be driven. What holds along the law holds in some orientation
+of the range; where nothing holds along it, another orientation may.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import Annotated
+
+import numpy as np
+
+from designer import checked
+from designer.arrays import FloatArray, frozen_array
+from designer.model.cable import Material
+from designer.model.region import Region
+from designer.model.robot import Poses, Robot
+from designer.model.turning import Following, TurnTable
+from designer.model.workspace import HangsBelow
+from designer.sizing.newton import size_poses
+from designer.workspace.demand import demand_of
+
+_NODES = 256
+"""Positions at which the best orientation is sought, at most; between them it is interpolated."""
+_TRIED = {1: 25, 2: 13, 3: 7}
+"""Orientations along each of so many free components, first."""
+_STEPS = 12
+"""Of the search from the best of these: to a neighbour, or half as far."""
+_BESIDE = np.array([-1.0, 0.0, 1.0])
+_TIE = 1e-4
+"""Relative: what a turn to the end of the range may cost; of orientations as good, the least."""
+_CHECKED = 64
+"""Positions between the others at which the law is compared with the best."""
+
+
+@dataclass(frozen=True, eq=False)
+class BestTurns(Following):
+    """The orientation in a range that needs the thinnest cable of a family, at each position.
+
+    Parameters
+    ----------
+    robot, material
+        Without load cases, as drawn; and the family.
+    region : Region
+        Whose positions are asked; elsewhere the law goes on as it is at its rim.
+    range_rad : array (2, 3)
+        Lowest and highest components of the rotation vector [rad].
+    hangs_below : str
+        See `Workspace`; an orientation whose pose is left out is not taken.
+    """
+
+    robot: Robot
+    material: Material
+    region: Region
+    range_rad: Annotated[FloatArray, checked.Shape((2, 3))]
+    hangs_below: HangsBelow = "include"
+
+    @cached_property
+    def table(self) -> TurnTable:
+        """The law: the best orientations where they were sought; level where none holds."""
+        positions = self._positions_m(_NODES, 0)
+        turns, diameter_m = self.best(positions)
+        is_held = np.isfinite(diameter_m)
+        if not is_held.any():
+            return TurnTable(positions[:1], np.clip(np.zeros((1, 3)), *self.range_rad))
+        return TurnTable(frozen_array(positions[is_held]), frozen_array(turns[is_held]))
+
+    @cached_property
+    def excess(self) -> float:
+        """By how much the law needs a thicker cable than the best orientations, relative.
+
+        The largest diameter of each, at positions between those of the table; infinite where the
+        law does not hold and another orientation does; zero for a list of points, which are all
+        in the table.
+        """
+        if self.region.is_discrete:
+            return 0.0
+        positions = self._positions_m(_CHECKED, 1)
+        best = self.best(positions)[1]
+        places = np.hstack([positions, self.turns_rad(positions)[:, 0]])[np.isfinite(best)]
+        if not len(places):
+            return 0.0
+        largest = self._diameter_m(places, is_quick=False).max()
+        return max(float(largest / best[np.isfinite(best)].max()) - 1.0, 0.0)
+
+    def _positions_m(self, count: int, seed: int) -> FloatArray:
+        """Return positions of the region, no two alike; the first time its landmarks as well."""
+        drawn = np.concatenate([*self.region.samples_m(count, "low_discrepancy", seed)])
+        if seed == 0:
+            drawn = np.concatenate([self.region.border().landmarks_m(), drawn])
+        return frozen_array(np.unique(drawn, axis=0))
+
+    def best(self, positions_m: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the best rotation vectors at positions (n, 3) [rad], and what is needed there [m].
+
+        On a grid over the range, and on finer ones about the best; infinite where nothing holds.
+        """
+        low, high = self.range_rad
+        free = np.flatnonzero(high > low)
+        steps = np.linspace(-1.0, 1.0, _TRIED[len(free)])
+        n = len(positions_m)
+        best = np.tile(0.5 * (low + high), (n, 1))
+        least, need = np.full(n, np.inf), np.full(n, np.inf)
+        reach = np.tile(0.5 * (high - low), (n, 1, 1))
+        for _ in range(1 + _STEPS):
+            grid = np.zeros((len(steps) ** len(free), 3))
+            grid[:, free] = list(product(steps, repeat=len(free)))
+            turns = np.clip(best[:, None] + grid * reach, low, high)
+            places = np.concatenate(
+                [np.broadcast_to(positions_m[:, None], turns.shape), turns], axis=-1
+            )
+            diameter_m = self._diameter_m(places.reshape(-1, 6)).reshape(n, -1)
+            size = np.linalg.norm(turns, axis=2) / np.abs(self.range_rad).max()
+            value = diameter_m * (1.0 + _TIE * size**2)
+            row, at = np.arange(n), value.argmin(axis=1)
+            better = value[row, at] < least
+            best = np.where(better[:, None], turns[row, at], best)
+            need = np.where(better, diameter_m[row, at], need)
+            least = np.minimum(least, value[row, at])
+            if len(steps) > len(_BESIDE):
+                reach = reach * 2.0 / (len(steps) - 1)
+            else:
+                reach = np.where(better[:, None, None], reach, 0.5 * reach)
+            steps = _BESIDE
+        return best, need
+
+    def _diameter_m(self, places: FloatArray, *, is_quick: bool = True) -> FloatArray:
+        """Return what places (n, 6) need [m]; infinite where nothing holds or it is left out."""
+        poses = Poses.at(places)
+        sizing = size_poses(self.robot, poses, self.material, seeks_better=False, is_quick=is_quick)
+        demand = demand_of(sizing.diameter_m, sizing.statics, self.hangs_below)
+        return np.where(np.isneginf(demand), np.inf, demand)
+
+    def turns_rad(self, positions_m: FloatArray) -> FloatArray:
+        return self.table.turns_rad(positions_m)
+
+    @property
+    def rows(self) -> tuple[FloatArray, FloatArray]:
+        return self.table.rows
+
+    @property
+    def words(self) -> str:
+        low, high = (
+            f"({', '.join(f'{angle:.3g}' for angle in np.degrees(end))})" for end in self.range_rad
+        )
+        costs = (
+            f"at {_CHECKED} others the thickest cable along this law is {self.excess:.1%} thicker "
+            "than in the best orientation of each"
+        )
+        if self.region.is_discrete:
+            costs = "there are no others"
+        return (
+            f"in the orientation between {low} and {high} degrees that needs the thinnest cable, "
+            f"sought at {len(self.table.positions_m)} positions; {costs}"
+        )
