@@ -136,7 +136,7 @@ def test_a_free_orientation_is_as_good_as_brute_force(seed: int, study_of: Study
         study.robot, Poses.at(places), study.material, seeks_better=False, is_quick=True
     )
     brute = np.where(sizing.statics.is_solved, sizing.diameter_m, np.inf).reshape(12, -1)
-    assert (law.best(positions)[1] <= brute.min(axis=1) * 1.003).all()
+    assert (law.best(positions)[1] <= brute.min(axis=1) * 1.01).all()
     nodes = study.workspace.space.places(law.rows[0])
     held = size_poses(study.robot, Poses.at(nodes), study.material)
     assert held.diameter_m.max() <= law.best(law.rows[0])[1].max() * 1.0001
