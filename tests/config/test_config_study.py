@@ -175,6 +175,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("workspace.region.prism", "anchors", "anchors"),
         Entry("workspace.region.inset", "3 m", "3 m"),
         Entry("workspace.region.z", "[1, 8]", "[1, 8] m"),
+        Entry("workspace.poses", "default", "none"),
         Entry("workspace.samples", "500", "500"),
         Entry("workspace.sampling", "default", "low_discrepancy"),
         Entry("workspace.seed", "default", "0"),
@@ -186,6 +187,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("workspace.orientation", "default", "none"),
         Entry("workspace.orientations", "default", "none"),
         Entry("workspace.orientation_range", "default", "none"),
+        Entry("workspace.orientation_free", "default", "none"),
         Entry("selection.grades", "default", "all"),
         Entry("selection.safety_factor", "4", "4"),
         Entry("selection.duty_class", "default", "none"),
@@ -267,8 +269,8 @@ def _with_options(text: str) -> str:
 
 def test_the_options_in_the_starter_config_are_true(study_of: StudyOf) -> None:
     text = _with_options(example_file("fast").read_text(encoding="utf-8"))
-    choices = re.compile(r"(?m)^ *(planar|orientation|orientations|orientation_range):.*\n")
-    assert len(choices.findall(text)) == 4
+    choices = re.compile(r"(?m)^ *(planar|poses|orientation\w*):.*\n")
+    assert len(choices.findall(text)) == 8
     text = choices.sub("", text)
     with pytest.raises(InputError, match="uncertainty or groups, not both"):
         study_of(text)
