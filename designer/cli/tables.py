@@ -244,7 +244,7 @@ def _found(diagnosis: Diagnosis) -> Iterator[Row]:
     if diagnosis.measured.thinned:
         yield "a long log", diagnosis.measured.thinned
     if not diagnosis.measured.has_poses:
-        yield "poses", "estimated from each row's own readings"
+        yield "poses", escape(diagnosis.measured.origin_of_poses)
     for finding in diagnosis.findings:
         values = ", ".join(
             f"{name} = {e.value:.4g} ± {e.std:.2g}" for name, e in finding.parameters.items()

@@ -118,7 +118,7 @@ def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
     effects = [setting.effect for setting in fit.settings]
     pairs = [(effect, parameter) for effect in effects for parameter in effect.parameters]
     typical = np.array([parameter.typical for _, parameter in pairs])
-    residual = problem.residual(fit.settings)
+    residual = problem.misfit(fit.settings)
     # Huber's weights, as in the fit: outliers settle nothing.
     limit = HUBER * math.sqrt(fit.variance)
     doubt = steepness(problem, fit.settings)

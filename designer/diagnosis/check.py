@@ -148,8 +148,8 @@ class Check:
         yield f"{self.n_compared} of {self.measured.n_rows} rows compared, outliers and all."
         if self.measured.thinned:
             yield f"{self.measured.thinned}."
-        if not self.measured.has_poses:
-            yield "No pose was measured: each is estimated from the row's own readings."
+        if origin := self.measured.origin_of_poses:
+            yield origin
         if not self.study.effects:
             yield "The config declares no effects."
         elif not self._betters(self.without):

@@ -37,9 +37,9 @@ def beside_drift(problem: Problem, rest: Fit, model: Fit, effect: Effect, rows: 
     In units of the variance, and for as many independent readings as there are; ``rest`` is fitted
     without the effect. Readings that stand off from both models tell nothing.
     """
-    mask = rows[:, None] & np.isfinite(problem.measured.readings)
+    mask = problem.used(rows)
     residuals = [
-        np.where(mask, problem.residual(fitted.settings), np.nan) for fitted in (rest, model)
+        np.where(mask, problem.misfit(fitted.settings), np.nan) for fitted in (rest, model)
     ]
     suits = np.any([np.isfinite(without_outliers(r)) for r in residuals], axis=0)
     before, after = (

@@ -14,6 +14,8 @@ from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import score_covariances
 from designer.effects.effect import Effect, Setting, Values
 
+_JUMP = 1e3
+"""Of the noise, over a thousandth of a parameter's typical size: no slope, but another balance."""
 HUBER = 3.0
 """Standard deviations up to which a residual counts by its square: noise exceeds it in 1 of 370."""
 
@@ -132,9 +134,9 @@ def fit(
         Whether known effects that have several valleys start in each of them again: the valley
         that an effect was found in alone need not be the one that it has beside another.
     """
-    is_used = rows[:, None] & ~np.isnan(problem.measured.readings)
+    is_used = problem.used(rows)
     if not effects:
-        loss = float(huber(problem.residual(())[is_used]).sum())
+        loss = float(huber(problem.misfit(())[is_used]).sum())
         return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(is_used))
     fresh = _to_start(effects, start, anew=anew)
     # Evaluations from anywhere, and from near the end.
@@ -201,13 +203,13 @@ def _stepped(
 ) -> tuple[float, float, FloatArray]:
     """Return the loss that a linear step promises, and the loss and place where such steps lead."""
     low, high = np.array([p.bounds for effect in effects for p in effect.parameters]).T
-    residual = problem.residual(settings_at(effects, vector))[is_used]
+    residual = problem.misfit(settings_at(effects, vector))[is_used]
     loss, promise = float(huber(residual).sum()), np.inf
     for _ in range(8):
         slopes = jacobian(problem, effects, vector, nearly=True)[is_used]
         promised, step = _linear_step(residual, slopes)
         there = np.clip(vector + step, low, high)
-        residual_there = problem.residual(settings_at(effects, there))[is_used]
+        residual_there = problem.misfit(settings_at(effects, there))[is_used]
         loss_there = float(huber(residual_there).sum())
         promise = min(promise, promised)
         if loss_there >= loss:
@@ -223,7 +225,7 @@ def _stepped(
 def jacobian(
     problem: Problem, effects: Sequence[Effect], vector: FloatArray, *, nearly: bool = False
 ) -> FloatArray:
-    """Return the slopes of the residual (n_rows, 2 n_cables, n_parameters).
+    """Return the slopes of the misfit (n_rows, n_channels, n_parameters).
 
     With ``nearly``, slopes that were taken near by will do; see `KeptSlopes`.
     """
@@ -236,28 +238,29 @@ def jacobian(
 
 
 def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> FloatArray:
-    """Return the slopes of the residual in the parameters of one of the settings.
+    """Return the slopes of the misfit in the parameters of one of the settings.
 
     A row that the model holds on one side only tells its slope there; one that it does not hold at
-    all has none.
+    all, or whose pose jumps, has none.
     """
-    sigma, read = problem.sigma, problem.measured.readings
-    predicted = problem.predicted(settings).stacked
+    is_read = problem.measured.is_read
+    predicted = problem.in_noise(settings)
     slopes = []
     for p in own.effect.parameters:
         value = own.values[p.name]
         # So short that one side will do, and far above the solver's residual.
         step = 1e-3 * max(p.typical, 0.1 * abs(value - p.neutral))
-        slope = np.full_like(read, np.nan)
+        slope = np.full(is_read.shape, np.nan)
         for moved in (value + step, value - step):
-            is_lost = np.isnan(slope) & ~np.isnan(read) & ~np.isnan(predicted)
+            is_lost = np.isnan(slope) & is_read & ~np.isnan(predicted)
             if not is_lost.any():
                 break
             there = replace(own, values={**own.values, p.name: moved})
             settings_there = tuple(there if s is own else s for s in settings)
-            change = problem.predicted(settings_there).stacked - predicted
-            slope = np.where(is_lost, -change / (moved - value) / sigma, slope)
-        slopes.append(np.where(np.isnan(read), np.nan, np.nan_to_num(slope)))
+            change = problem.in_noise(settings_there) - predicted
+            change[np.abs(change) > _JUMP] = np.nan
+            slope = np.where(is_lost, -change / (moved - value), slope)
+        slopes.append(np.where(is_read, np.nan_to_num(slope), np.nan))
     return np.stack(slopes, axis=-1)
 
 
@@ -293,7 +296,7 @@ def in_reach(
     effect : Effect
         The one that is added.
     """
-    is_used = rows[:, None] & ~np.isnan(problem.measured.readings)
+    is_used = problem.used(rows)
     others = [s.effect for s in present.settings]
     known = np.empty((int(is_used.sum()), 0))
     if others:
@@ -305,9 +308,9 @@ def in_reach(
         settings = settings_at(effects, vector)
         (own,) = (s for s in settings if s.effect.key == effect.key)
         slopes = _slopes(problem, settings, own)[is_used]
-        residual = problem.residual(settings)[is_used]
+        residual = problem.misfit(settings)[is_used]
         losses.append(_linear_step(residual, np.hstack([known, slopes]))[0])
-    residual = problem.residual(present.settings)[is_used]
+    residual = problem.misfit(present.settings)[is_used]
     return Reach(_linear_step(residual, known)[0], min(losses))
 
 
@@ -344,7 +347,7 @@ def _fit_from(
     inside = np.clip(start, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
     for _ in range(5):  # until the distrust of readings agrees with what the fit leaves
         answer = least_squares(
-            lambda v: problem.residual(settings_at(effects, v))[mask],
+            lambda v: problem.misfit(settings_at(effects, v))[mask],
             inside,
             jac=lambda v: jacobian(problem, effects, v, nearly=not thorough)[mask],
             bounds=(low, high),

@@ -24,6 +24,7 @@ from designer.model.measured_data import EVEN, Measured, Noise
 from designer.model.region import Region
 from designer.model.robot import Poses
 from designer.statics.forward import moved_poses
+from designer.statics.geometry import cable_geometry
 
 TAKEN_UP = "taken up by the estimated poses"
 """Why an effect cannot be told."""
@@ -31,9 +32,11 @@ _CANDIDATES = 4000
 """Places to start from: neighbours are a sixteenth of the region's side apart."""
 _STEP = 1e-6
 """Over the frame's size: slopes to six digits, as the catenaries have ten."""
-_STILL = 1e-2
+_STILL = 5e-2
 """Of the noise, or of what is left where that is more: the rest of the way is straight, to a small
 share of this."""
+_EXACT = 1e-7
+"""Of the noise: what weights may still change, as slopes over short steps show more."""
 _UNHELD = 1e9
 """What is left of a reading where the model cannot hold the pose: worse than any error."""
 
@@ -100,29 +103,37 @@ class FreePredictor(Predictor):
             poses, slopes = _either(is_lost, self._first, poses), None
             answer, residual = self._left_at(poses, settings, noise)
         share = np.ones(len(residual))
-        for _ in range(6):  # turns at most
-            slopes = self._slopes_at(poses, settings, noise) if slopes is None else slopes
+        for _ in range(12):  # turns at most
+            if slopes is None:
+                slopes = self._slopes_at(poses, residual, settings, noise)
             for _ in range(4):  # steps with these slopes: near the end two will do
-                step = share[:, None] * _step(slopes, residual)
+                step = _step(slopes, residual)
                 rest = np.einsum("rcp,rp->rc", slopes, step)
                 still = _STILL * np.maximum(1.0, np.abs(residual).max(axis=1))
                 if np.all(np.abs(rest).max(axis=1) < still):
                     self._near[kind] = poses, slopes
                     # And a last short step, which takes that off what is left.
-                    true, displayed = answer
-                    sigma = noise.of_channels(displayed.length_m.shape[1])
-                    return true, Readings(*np.hsplit(displayed.stacked + sigma * rest, 2))
-                trial = moved_poses(self.machine.robot, poses, step)
+                    return answer[0], self._moved_by(answer[1], rest, noise)
+                trial = moved_poses(self.machine.robot, poses, share[:, None] * step)
                 answer, residual_trial = self._left_at(trial, settings, noise)
                 closer = _loss(residual_trial) <= _loss(residual)
                 poses = _either(closer, trial, poses)
                 residual = np.where(closer[:, None], residual_trial, residual)
                 share = np.where(closer, np.minimum(1.0, 4.0 * share), 0.25 * share)
-                if not closer.all():
+                if not closer.all():  # slopes from elsewhere may lead the wrong way
                     answer, residual = self._left_at(poses, settings, noise)
+                    break
             slopes = None
-        self._near[kind] = poses, self._slopes_at(poses, settings, noise)
+        self._near[kind] = poses, self._slopes_at(poses, residual, settings, noise)
         return self._left_at(poses, settings, noise)[0]
+
+    def _moved_by(self, displayed: Readings, change: FloatArray, noise: Noise) -> Readings:
+        """Return what is shown a change of all that is left further (n_rows, …)."""
+        n_cables, off = self.machine.robot.n_cables, displayed.coordinates_off
+        readings, coordinates = np.split(change, [2 * n_cables], axis=1)
+        stacked = displayed.stacked + noise.of_channels(n_cables) * readings
+        length_m, tension_N = np.hsplit(stacked, 2)
+        return Readings(length_m, tension_N, off if off is None else off - coordinates)
 
     def _left_at(
         self, poses: Poses, settings: Sequence[Setting], noise: Noise
@@ -138,20 +149,27 @@ class FreePredictor(Predictor):
         sigma = noise.of_channels(self.machine.robot.n_cables)
         residual = (measured.readings - displayed.stacked) / sigma
         residual = np.where(np.isnan(residual), _UNHELD, residual)
-        return answer, np.where(np.isfinite(measured.readings), residual, 0.0)
+        residual = np.where(np.isfinite(measured.readings), residual, 0.0)
+        if measured.coordinates is None:
+            return answer, residual
+        off = measured.coordinates.off(poses)
+        answer = answer[0], replace(displayed, coordinates_off=off)
+        return answer, np.hstack([residual, off])
 
-    def _slopes_at(self, poses: Poses, settings: Sequence[Setting], noise: Noise) -> FloatArray:
+    def _slopes_at(
+        self, poses: Poses, residual: FloatArray, settings: Sequence[Setting], noise: Noise
+    ) -> FloatArray:
         """Return how much less is left for a step of each degree of freedom (rows, …, dof)."""
         robot = self.machine.robot
-        residual = self._left_at(poses, settings, noise)[1]
         step_m = _STEP * frame_size_m(self.machine)
         slopes = np.empty((*residual.shape, robot.degrees_of_freedom))
         for k in range(robot.degrees_of_freedom):
             step = np.zeros((len(residual), robot.degrees_of_freedom))
             step[:, k] = step_m
             residual_moved = self._left_at(moved_poses(robot, poses, step), settings, noise)[1]
-            slopes[..., k] = (residual - residual_moved) / step_m
-        self._left_at(poses, settings, noise)
+            is_held = np.maximum(np.abs(residual), np.abs(residual_moved)) < _UNHELD
+            slopes[..., k] = np.where(is_held, (residual - residual_moved) / step_m, 0.0)
+        self.measured = replace(self.measured, poses=poses)
         return slopes
 
 
@@ -169,18 +187,26 @@ def first_poses(machine: Machine, measured: Measured, region: Region) -> Poses:
     region : Region
         Where the robot works.
     """
+    robot = machine.robot
     places = np.concatenate(list(region.samples_m(_CANDIDATES, "low_discrepancy", 0)))
-    stacked = readings_of(machine, Poses.at(places)).stacked
+    readings = readings_of(machine, Poses.at(places))
+    if np.isnan(measured.tension_N).all():  # what pulls the cables is not known: rather straight
+        chord_m = cable_geometry(robot, Poses.at(places)).chord_m
+        readings = replace(readings, length_m=chord_m + 0.0 * readings.length_m)
+    stacked = readings.stacked
     scale = np.maximum(np.nanstd(stacked, axis=0), 1e-12)
     unlike = np.where(np.isnan(stacked), np.inf, 0.0).sum(axis=1)  # what the machine cannot hold
+    rows = measured.readings
+    if measured.coordinates is not None:
+        rows = np.hstack([rows, measured.coordinates.values[:, :3]])
+        stacked = np.hstack([stacked, places])
+        scale = np.hstack([scale, np.maximum(np.std(places, axis=0), 1e-12)])
     nearest = [
-        int(np.argmin(np.nansum(((row - stacked) / scale) ** 2, axis=1) + unlike))
-        for row in measured.readings
+        int(np.argmin(np.nansum(((row - stacked) / scale) ** 2, axis=1) + unlike)) for row in rows
     ]
-    rotation = np.eye(3)
-    if not machine.robot.is_point_mass:
-        rotation = np.tile(rotation, (measured.n_rows, 1, 1))
-    return Poses(places[nearest], rotation)
+    rotation = np.eye(3) if robot.is_point_mass else np.tile(np.eye(3), (measured.n_rows, 1, 1))
+    poses = Poses(places[nearest], rotation)
+    return poses if measured.coordinates is None else measured.coordinates.put_into(poses)
 
 
 def taken_up(
@@ -214,16 +240,25 @@ def taken_up(
 
 
 def _step(slopes: FloatArray, residual: FloatArray) -> FloatArray:
-    """Return the Gauss-Newton step of each row (n_rows, dof), outliers weighted down."""
-    size = np.abs(residual)
-    weight = np.where(size < _UNHELD, np.minimum(1.0, HUBER / np.maximum(size, HUBER)), 0.0)
-    weighted = slopes * weight[..., None]
-    square = np.einsum("rcp,rcq->rpq", weighted, slopes)
-    pull = np.einsum("rcp,rc->rp", weighted, residual)
-    # Nothing moves where nothing was read; no slope has the last digits of a double.
-    least = 1e-13 * np.trace(square, axis1=1, axis2=2) + np.finfo(np.float64).tiny
-    ridge = least[:, None, None] * np.eye(square.shape[-1])
-    return np.asarray(np.linalg.solve(square + ridge, pull[..., None])[..., 0])
+    """Return the Gauss-Newton step of each row (n_rows, dof): the least robust loss, if linear.
+
+    Outliers are weighted down, as they are after the step.
+    """
+    is_held = np.abs(residual) < _UNHELD
+    rest, step = residual, np.zeros((len(residual), slopes.shape[-1]))
+    for _ in range(30):  # weights anew: where none stands off, the second time changes nothing
+        weight = np.where(is_held, np.minimum(1.0, HUBER / np.maximum(np.abs(rest), HUBER)), 0.0)
+        weighted = slopes * weight[..., None]
+        square = np.einsum("rcp,rcq->rpq", weighted, slopes)
+        pull = np.einsum("rcp,rc->rp", weighted, residual)
+        # Nothing moves where nothing was read; no slope has the last digits of a double.
+        least = 1e-13 * np.trace(square, axis1=1, axis2=2) + np.finfo(np.float64).tiny
+        ridge = least[:, None, None] * np.eye(square.shape[-1])
+        step = np.asarray(np.linalg.solve(square + ridge, pull[..., None])[..., 0])
+        before, rest = rest, residual - np.einsum("rcp,rp->rc", slopes, step)
+        if not (is_held & (np.abs(rest - before) > _EXACT) & (np.abs(rest) > HUBER)).any():
+            break
+    return step
 
 
 def _loss(values: FloatArray) -> FloatArray:

@@ -57,9 +57,9 @@ def drifting(outcome: Outcome) -> Withdrawn | None:
     problem, model, structure = outcome.problem, outcome.fit, outcome.structure
     rows, keys = outcome.rows, {effect.key for effect in outcome.found}
     limit = 4.0 * np.sqrt(model.variance)  # so that no outlier makes a drift
-    unclipped = problem.residual(model.settings)
+    unclipped = problem.misfit(model.settings)
     residual = np.clip(unclipped, -limit, limit)
-    is_used = rows[:, None] & ~np.isnan(residual)
+    is_used = problem.used(rows)
     slopes = jacobian(problem, [s.effect for s in model.settings], model.vector)
     spanned = orthonormal(slopes[is_used])
     remainder = beside(spanned, residual[is_used])
@@ -72,7 +72,7 @@ def drifting(outcome: Outcome) -> Withdrawn | None:
             continue
         # What the effect takes off the sum of squares that the others, fitted anew, leave.
         rest = [s for s in model.settings if s is not setting]
-        change = problem.residual(rest)[is_used] - unclipped[is_used]
+        change = problem.misfit(rest)[is_used] - unclipped[is_used]
         other_slopes = orthonormal(np.delete(slopes, columns, axis=-1)[is_used])
         size = np.sqrt(max(np.sum(beside(other_slopes, change) ** 2), model.variance))
         for name, z in _weights(structure, covariates, predicted, rows):

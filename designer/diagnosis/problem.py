@@ -400,6 +400,27 @@ class Problem:
         """Return lengths and tensions that a residual may go with; see `Predictor`."""
         return self.predict.surroundings(settings, self.noise)
 
+    def used(self, rows: BoolArray) -> BoolArray:
+        """Return what is read in some rows (n_rows,), by the columns of `misfit`."""
+        return rows[:, None] & self.measured.is_read
+
+    def in_noise(self, settings: Sequence[Setting]) -> FloatArray:
+        """Return what is predicted, by the columns of `misfit`; coordinates from what was read."""
+        predicted = self.predicted(settings)
+        off = predicted.coordinates_off
+        return np.hstack([predicted.stacked / self.sigma, *([] if off is None else [-off])])
+
+    def misfit(self, settings: Sequence[Setting]) -> FloatArray:
+        """Return what a fit makes small: the residual, then that of coordinates of poses in part.
+
+        In units of noise (n_rows, 2 n_cables, or 6 more); NaN where not measured.
+        """
+        off = self.predicted(settings).coordinates_off
+        residual = self.residual(settings)
+        if off is None:
+            return residual
+        return np.where(self.measured.is_read, np.hstack([residual, off]), np.nan)
+
     def residual(self, settings: Sequence[Setting]) -> FloatArray:
         """Return (measured - predicted) / noise (n_rows, 2 n_cables); NaN where not measured."""
         read, sigma, predicted = (

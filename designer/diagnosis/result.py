@@ -461,8 +461,15 @@ def framed(answer: Json, study: Study, measured: Measured) -> Json:
 
 def rows_dict(outliers: Sequence[Outlier], measured: Measured) -> Json:
     """Return what files hold of the rows of either."""
-    poses = "measured" if measured.has_poses else "estimated"
-    return {"outliers": outliers, "notes": measured.notes, "poses": poses}
+    answer: Json = {"outliers": outliers, "notes": measured.notes, "poses": "measured"}
+    if not measured.has_poses:
+        answer["poses"] = "estimated"
+    if measured.coordinates is not None:
+        answer |= {
+            "poses": "measured in part",
+            "coordinates": measured.coordinates.left(measured.poses),
+        }
+    return answer
 
 
 def structure_dict(structure: Structure) -> Json:

@@ -372,7 +372,7 @@ class Searcher:
         loss = 0.0
         for part in folds(self.rows):
             model = fit(self.problem, effects, self.rows & ~part, start.settings)
-            loss += float(huber(self.problem.residual(model.settings)[part]).sum())
+            loss += float(huber(self.problem.misfit(model.settings)[part]).sum())
         return loss
 
     def _exchanged(

@@ -36,6 +36,7 @@ BOUNDS: Mapping[str, Bound] = {
     "sag": Bound(units.RELATIVE, 1e-3, 10.0, "from a taut wire to a loop; 'none' lets cables hang"),
     "length noise": Bound(units.LENGTH, 1e-9, 1e3, "no winch measures finer, or so badly"),
     "tension noise": Bound(units.FORCE, 1e-6, 1e8, "no load cell measures finer, or so badly"),
+    "angle noise": Bound(units.ANGLE, 1e-9, 1.0, "no inclinometer measures finer, or so badly"),
     "search time": Bound(units.TIME, 0.0, 1e6, "nobody waits for weeks"),
     "proof time": Bound(units.TIME, 0.0, 1e6, "nobody waits for weeks; 0 s is no proof"),
     "sheave": Bound(units.LENGTH, 1e-3, 15.0, "the sheaves of mine hoists have up to 9 m"),

@@ -29,10 +29,13 @@ class Readings:
     ----------
     length_m, tension_N : array (n_rows, n_cables)
         Lengths [m] and winch-side tensions [N]; NaN where the machine cannot hold the pose.
+    coordinates_off : array (n_rows, 6) or None
+        Of poses that were measured in part: measured less estimated, over the noise.
     """
 
     length_m: FloatArray
     tension_N: FloatArray
+    coordinates_off: FloatArray | None = None
 
     @property
     def stacked(self) -> FloatArray:

@@ -111,6 +111,7 @@ def column_hint(name: str) -> str:
 
 
 _MAP = "measurements.columns"
+_IN_PART = f"; or 'unknown: [{POSES}]' with noise: {{position: …, rotation: …}} for poses in part"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -193,7 +194,7 @@ def _named(part: Assigned) -> dict[str, RawColumn]:
 
 
 def complete(assigned: Assigned, study: Study, measurements: Measurements) -> None:
-    """Set aside columns that a log without poses or with half a wind has, and tell what is missing.
+    """Set aside half a wind, and tell what is missing.
 
     The table has the columns of all files.
     """
@@ -206,12 +207,6 @@ def complete(assigned: Assigned, study: Study, measurements: Measurements) -> No
         )
         for name in present:
             assigned.covariates[name] = assigned.ours.pop(name)
-    if not measurements.has_poses:
-        names = [name for name in assigned.ours if name in POSITION or is_rotation(name)]
-        for name in names:
-            del assigned.ours[name]
-        if names:
-            assigned.notes.append(f"{', '.join(names)} left out: poses are said to be unknown")
     assigned.faults.extend(_missing(assigned, study, has_poses=measurements.has_poses))
 
 
@@ -287,14 +282,14 @@ def _missing(assigned: Assigned, study: Study, *, has_poses: bool) -> Iterator[F
         hint = did_you_mean(POSITION[0], assigned.covariates)
         yield assigned.table.fault(None, ", ".join(POSITION), problem, expected + hint)
     else:
-        yield from _missing_of(assigned, POSITION)
+        yield from _missing_of(assigned, POSITION, _IN_PART)
         rotations = [name for name in (*assigned.ours, *assigned.awaited) if is_rotation(name)]
         forms = {rotation_form(name): name for name in rotations}
         if not study.robot.is_point_mass and len(forms) > 1:
             problem = f"the orientation is given in two forms, with {' and '.join(forms.values())}"
             yield assigned.table.fault(None, "", problem, "one; the columns of the other ignored")
         elif not study.robot.is_point_mass:
-            yield from _missing_of(assigned, next(iter(forms), ROTATION_VECTOR))
+            yield from _missing_of(assigned, next(iter(forms), ROTATION_VECTOR), _IN_PART)
     if present.isdisjoint(lengths + tensions):
         expected = f"{lengths[0]} … {lengths[-1]}, or {tensions[0]} … {tensions[-1]}, or both"
         problem = "there is neither a column for lengths nor one for tensions"
@@ -306,9 +301,9 @@ def _missing(assigned: Assigned, study: Study, *, has_poses: bool) -> Iterator[F
             yield from _missing_of(assigned, names)
 
 
-def _missing_of(assigned: Assigned, names: tuple[str, ...]) -> Iterator[Fault]:
+def _missing_of(assigned: Assigned, names: tuple[str, ...], instead: str = "") -> Iterator[Fault]:
     for name in names:
         if name not in assigned.ours and name not in assigned.awaited:
             hint = did_you_mean(name, assigned.covariates)
-            expected = f"a column of this name, or one mapped onto it in {_MAP}{hint}"
+            expected = f"a column of this name, or one mapped onto it in {_MAP}{instead}{hint}"
             yield assigned.table.fault(None, name, "is missing", expected)

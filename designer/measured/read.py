@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.documents.opened import open_input, reason
@@ -15,7 +14,6 @@ from designer.errors import Fault, InputError
 from designer.measured.assign import (
     POSITION,
     QUATERNION,
-    ROTATION_VECTOR,
     TEMPERATURE_NAME,
     TIME_NAME,
     WIND,
@@ -26,7 +24,9 @@ from designer.measured.assign import (
     tension_names,
 )
 from designer.measured.formats import is_bag, read_bag, read_table
+from designer.measured.in_part import coordinates_of, set_aside
 from designer.measured.join import joined
+from designer.measured.orientation import orientation
 from designer.measured.rows import (
     EPOCH_S,
     Rows,
@@ -68,8 +68,10 @@ def read_measured(study: Study) -> Measured:
         parts = assign(tables, study, measurements)
         wrong_cells = [fault for part in parts for fault in cell_faults(part)]
         assigned = joined(parts, settled=measurements.settled)
+        if not measurements.has_poses:
+            assigned.faults.extend(set_aside(assigned, measurements))
         complete(assigned, study, measurements)
-        rows = usable_rows(assigned, study.robot.n_cables, settled=measurements.settled)
+        rows = usable_rows(assigned, study.robot.n_cables, measurements)
         faults = [*assigned.table.faults, *assigned.faults, *wrong_cells]
         faults += rows.faults if len(parts) == 1 or not faults else []
         _refuse([*faults, *quaternion_faults(assigned, rows.kept)])
@@ -86,7 +88,8 @@ def read_measured(study: Study) -> Measured:
         poses = Poses.at(np.full((int(rows.kept.sum()), 3), np.nan))
     measured = _measured(assigned, rows, poses, study.robot.n_cables, settled=measurements.settled)
     if not measurements.has_poses:
-        measured = replace(measured, has_poses=False)
+        coordinates = coordinates_of(assigned, measurements, rows.kept)
+        measured = replace(measured, has_poses=False, coordinates=coordinates)
         _refuse_without_spare_readings(study.robot, measured, table)
         _refuse(list(_missing_noise(study, measurements, measured)))
         return measured
@@ -194,27 +197,6 @@ def _measured(
         thinned=rows.thinned,
         sha256=assigned.table.sha256,
     )
-
-
-def orientation(columns: tuple[str, ...], values: FloatArray) -> FloatArray:
-    """Return rotations from body to world (n_rows, 3, 3).
-
-    Parameters
-    ----------
-    columns : tuple of str
-        Our names of the columns: a rotation vector, a quaternion, or Euler angles, whose names say
-        the axes and whether these turn with the body (``intrinsic``) or not (``extrinsic``).
-    values : array (n_rows, 3 or 4)
-        The columns; angles in radians. Quaternions are scaled to unit length.
-    """
-    if columns == ROTATION_VECTOR:
-        rotation = Rotation.from_rotvec(values)
-    elif columns == QUATERNION:
-        rotation = Rotation.from_quat(np.roll(values, -1, axis=1))  # SciPy has w last
-    else:
-        _, sense, axes, _ = columns[0].split("_")
-        rotation = Rotation.from_euler(axes.upper() if sense == "intrinsic" else axes, values)
-    return np.asarray(rotation.as_matrix(), dtype=np.float64)
 
 
 def quaternion_faults(assigned: Assigned, mask: BoolArray) -> list[Fault]:

@@ -13,6 +13,7 @@ from designer.arrays import BoolArray, IntArray
 from designer.errors import Fault
 from designer.measured import assign
 from designer.measured.table import MOST_ALIKE, LogTable, RawColumn, is_number
+from designer.model.measurements import POSES, Measurements
 from designer.spelling import in_runs
 from designer.units import ANGLE, FORCE, LENGTH, NUMBER, SPEED, TEMPERATURE, describe
 
@@ -97,7 +98,7 @@ def cell_faults(assigned: assign.Assigned) -> list[Fault]:
     return [*_text_faults(assigned, [column for _, column in columns]), *wild]
 
 
-def usable_rows(assigned: assign.Assigned, n_cables: int, *, settled: bool) -> Rows:
+def usable_rows(assigned: assign.Assigned, n_cables: int, measurements: Measurements) -> Rows:
     """Return which rows have a pose and a reading.
 
     Parameters
@@ -106,10 +107,11 @@ def usable_rows(assigned: assign.Assigned, n_cables: int, *, settled: bool) -> R
         The table with its columns assigned; some may be missing, which is not told again.
     n_cables : int
         Number of cables of the robot.
-    settled : bool
-        Whether the rows are poses at rest, which may have the same time.
+    measurements : Measurements
+        Whether poses are asked for, and rows at rest, which may have the same time.
     """
-    has_pose, faults = _with_pose(assigned)
+    every_row = np.ones(assigned.table.n_rows, dtype=np.bool_)
+    has_pose, faults = _with_pose(assigned) if measurements.has_poses else (every_row, [])
     has_reading = np.ones_like(has_pose)
     if readings := assigned.present(assign.length_names(n_cables) + assign.tension_names(n_cables)):
         has_reading = ~np.all([np.isnan(column.values) for column in readings], axis=0)
@@ -120,7 +122,7 @@ def usable_rows(assigned: assign.Assigned, n_cables: int, *, settled: bool) -> R
         if left_out.any()
     ]
     if time := assigned.ours.get(assign.TIME_NAME):
-        faults += time_faults(assigned.table, time, is_usable, settled=settled)
+        faults += time_faults(assigned.table, time, is_usable, settled=measurements.settled)
     if is_usable.sum() < FEWEST_ROWS:
         total = assigned.table.n_rows
         problem = f"{is_usable.sum()} of {total} rows have a pose and a reading"
@@ -180,7 +182,10 @@ def _with_pose(assigned: assign.Assigned) -> tuple[BoolArray, list[Fault]]:
     has_pose = np.asarray(~missing.all(axis=0))
     places = np.argwhere(missing & has_pose)
     problem = "has half a pose, this is missing"
-    expected = "all of it, or nothing; or 'unknown: [poses]', which estimates whole poses"
+    expected = (
+        f"all of it, or nothing; or 'unknown: [{POSES}]' with noise: {{position: …, rotation: …}}, "
+        "which estimates what is missing"
+    )
     halves = (table.fault(int(row), filled[k].name, problem, expected) for k, row in places)
     return has_pose, faults + table.first_few(halves, len(places), "missing values")
 

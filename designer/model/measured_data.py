@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.model.coordinates import Coordinates
 from designer.model.robot import Poses
 
 
@@ -58,6 +59,8 @@ class Measured:
         Digest of the file's bytes; empty where there is no file.
     has_poses : bool
         Whether poses were measured; else each row's own readings have to tell its pose.
+    coordinates : Coordinates or None
+        What was measured of those poses, where they were in part.
     """
 
     poses: Poses
@@ -73,6 +76,7 @@ class Measured:
     thinned: str = ""
     sha256: str = ""
     has_poses: bool = True
+    coordinates: Coordinates | None = None
 
     @property
     def n_rows(self) -> int:
@@ -85,9 +89,32 @@ class Measured:
         return np.hstack([self.length_m, self.tension_N])
 
     @property
+    def is_read(self) -> BoolArray:
+        """Which lengths, tensions, and coordinates of poses in part, there are (n_rows, …)."""
+        readings = np.isfinite(self.readings)
+        return (
+            readings
+            if self.coordinates is None
+            else np.hstack([readings, self.coordinates.is_read])
+        )
+
+    @property
     def n_readings(self) -> IntArray:
-        """Number of lengths and tensions in each row (n_rows,)."""
-        return np.asarray(np.isfinite(self.readings).sum(axis=1))
+        """Number of readings in each row (n_rows,), coordinates of poses in part among them."""
+        return np.asarray(self.is_read.sum(axis=1))
+
+    @property
+    def origin_of_poses(self) -> str:
+        """Where the poses come from, in a sentence; empty where they were measured."""
+        if self.has_poses:
+            return ""
+        if self.coordinates is None:
+            return "No pose was measured; each is estimated from the row's own readings."
+        counts = (f"{name} in {n}" for name, n in self.coordinates.counts.items())
+        return (
+            f"Poses were measured in part: of {self.n_rows} rows {', '.join(counts)}. The rest of "
+            "each is estimated from the row's own readings."
+        )
 
     @property
     def columns(self) -> frozenset[str]:
@@ -102,6 +129,7 @@ class Measured:
             self,
             length_m=np.where(hidden, np.nan, self.length_m),
             tension_N=np.where(hidden, np.nan, self.tension_N),
+            coordinates=self.coordinates and self.coordinates.without(rows),
         )
 
 

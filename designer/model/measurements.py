@@ -65,6 +65,9 @@ class Measurements(checked.Value):
         Standard deviation of a measured length [m]; None where not given.
     tension_noise_N : float or None
         Standard deviation of a measured tension [N]; None where not given.
+    position_noise_m, rotation_noise_rad : float or None
+        Standard deviation of a measured coordinate [m] and angle [rad] of poses that are estimated;
+        None where such are not used.
     diameter_m : float or None
         Diameter of the cable, for effects of plugins that ask for it, and for bending [m].
     minimum_breaking_load_N : float or None
@@ -89,6 +92,8 @@ class Measurements(checked.Value):
     estimated_noise: tuple[Reading, ...] = ()
     search_time_s: checked.NotNegative = 600.0
     more_files: tuple[Path, ...] = ()
+    position_noise_m: checked.Positive | None = None
+    rotation_noise_rad: checked.Positive | None = None
 
     @property
     def files(self) -> tuple[Path, ...]:

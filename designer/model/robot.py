@@ -191,8 +191,8 @@ class Robot:
         """Rotation (3, 3) from the base frame to one whose z axis is the true vertical."""
         if self.is_upright:
             return np.eye(3)
-        tilt = Rotation.from_rotvec([*self.tilt_rad, 0.0]).as_matrix()
-        return np.asarray(tilt @ self._headed(vertical_frame(self.gravity_direction)))
+        line = self.exit_points_m.tobytes() if self.is_planar else b""
+        return _level(line, *self.tilt_rad.tolist(), *self.gravity_direction.tolist())
 
     @property
     def leaning(self) -> FloatArray:
@@ -200,14 +200,7 @@ class Robot:
         return np.asarray(self.upright @ self.level.T)
 
     def _headed(self, vertical: FloatArray) -> FloatArray:
-        if not self.is_planar:
-            return vertical
-        # Turn the line of the exit points, seen from above, into x.
-        plan = (self.exit_points_m @ vertical.T)[:, :2]
-        x, y = np.linalg.svd(plan - plan.mean(axis=0))[2][0]
-        if (x, y) < (0.0, 0.0):
-            x, y = -x, -y
-        return np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]]) @ vertical
+        return _headed(vertical, self.exit_points_m) if self.is_planar else vertical
 
     @property
     def attachments_m(self) -> FloatArray:
@@ -260,6 +253,27 @@ def vertical_frame(gravity_direction: FloatArray) -> FloatArray:
     """Return the rotation (3, 3) to a frame whose z axis is the vertical, by the shortest way."""
     x, y, z = gravity_direction
     return _vertical_frame(float(x), float(y), float(z))
+
+
+@lru_cache(maxsize=256)
+def _level(exit_points: bytes, rx: float, ry: float, *down: float) -> FloatArray:
+    """Return the frame of `Robot.level`; remembered, as every solve asks for it several times.
+
+    ``exit_points`` has the bytes of those of a planar robot.
+    """
+    frame = vertical_frame(np.array(down))
+    if exit_points:
+        frame = _headed(frame, np.frombuffer(exit_points).reshape(-1, 3))
+    return frozen_array(Rotation.from_rotvec([rx, ry, 0.0]).as_matrix() @ frame)
+
+
+def _headed(vertical: FloatArray, exit_points_m: FloatArray) -> FloatArray:
+    """Return a frame with the line of the exit points, seen from above, turned into x."""
+    plan = (exit_points_m @ vertical.T)[:, :2]
+    x, y = np.linalg.svd(plan - plan.mean(axis=0))[2][0]
+    if (x, y) < (0.0, 0.0):
+        x, y = -x, -y
+    return np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]]) @ vertical
 
 
 @lru_cache(maxsize=256)

@@ -19,23 +19,23 @@ STRETCH = Effect(
 )
 
 
-def predicted(settings):
+def in_noise(settings):
     (setting,) = settings
     x = setting.values["x_m"]
     rows = np.array([[3.0 * x, 0.0], [5.0 * x, 0.0], [7.0 * x, 0.0], [9.0 * x, 0.0]])
     rows[1, x > 1.0] = np.nan  # held up to 1
     rows[2, x < 1.0] = np.nan  # held from 1 on
     rows[3] = np.nan
-    return SimpleNamespace(stacked=rows)
+    return rows / [0.5, 1.0]
 
 
 def test_a_row_tells_its_slope_from_the_side_on_which_it_is_held():
     readings = np.array([[0.0, np.nan]] * 4)
     problem = SimpleNamespace(
         noise=None,
-        sigma=np.array([0.5, 1.0]),
-        measured=SimpleNamespace(readings=readings),
-        predicted=predicted,
+        measured=SimpleNamespace(is_read=~np.isnan(readings)),
+        in_noise=in_noise,
+        predicted=in_noise,
         predict=SimpleNamespace(slopes=KeptSlopes(), distrust=lambda settings, noise: (1.0, 1.0)),
     )
     slopes = jacobian(problem, [STRETCH], np.array([1.0]))

@@ -347,6 +347,11 @@ def unknown_poses_can_be_told(parts: Parts) -> Iterator[Fault]:
     """Where poses are unknown, attachments and the vertical are not."""
     unknown = {name: index for index, name in _texts(parts, _UNKNOWN)}
     if POSES not in unknown:
+        for name in ("position", "rotation"):
+            if parts.raw(f"measurements.noise.{name}") is not None:
+                problem = "has no use where poses are taken as they were measured"
+                expected = f"'{POSES}' in {_UNKNOWN}, by which coordinates are data with a noise"
+                yield parts.fault(f"measurements.noise.{name}", problem, expected)
         return
     lost = {ALL_ATTACHMENTS, "attachment_offset", "base_tilt"}
     for name in unknown.keys() & lost:

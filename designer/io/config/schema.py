@@ -281,6 +281,11 @@ class NoiseSection(Section):
     """Standard deviation of a measured length."""
     tension: fields.TensionNoise | None = config_field("Noise of tensions")
     """Standard deviation of a measured tension."""
+    position: fields.LengthNoise | None = config_field("Noise of positions")
+    """Standard deviation of a measured coordinate; with `unknown: [poses]`, such as the log has
+    are data beside lengths and tensions."""
+    rotation: fields.AngleNoise | None = config_field("Noise of angles")
+    """The same of a measured angle."""
     estimated: Readings = ()
     """Which of them a diagnosis has estimated; it writes this."""
 
@@ -345,6 +350,8 @@ class MeasurementsSection(Section):
             plausible_m=tuple((name, limit) for name, limit in self.plausible if limit is not None),
             length_noise_m=self.noise.length,
             tension_noise_N=self.noise.tension,
+            position_noise_m=self.noise.position,
+            rotation_noise_rad=self.noise.rotation,
             estimated_noise=self.noise.estimated,
             search_time_s=self.search_time,
         )
