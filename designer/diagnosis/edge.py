@@ -26,7 +26,7 @@ _STEP = 1e-7
 
 
 def steepness(problem: Problem, settings: Sequence[Setting]) -> FloatArray:
-    """Return by how much more than noise each reading is in doubt (n_rows, 2 n_cables).
+    """Return by how much more than noise each reading is in doubt (n_rows, n_readings).
 
     That is √(1 + |∂r/∂pose|²) with the pose in units of a length's noise; 1 in rows that are not at
     the edge, and of robots whose internal forces or poses are taken from the readings themselves.
@@ -35,7 +35,7 @@ def steepness(problem: Problem, settings: Sequence[Setting]) -> FloatArray:
     robot, n_cables = predict.machine.robot, measured.length_m.shape[1]
     slopes = np.zeros((*measured.readings.shape, robot.degrees_of_freedom))
     if predict.row_unknowns:
-        return np.ones_like(measured.readings)
+        return np.ones(problem.measured.is_read.shape)
     predicted = problem.predicted(settings).stacked
     step_m = _STEP * frame_size_m(predict.machine)
     for k in range(robot.degrees_of_freedom):

@@ -15,7 +15,7 @@ from designer.diagnosis.statistics import score_covariances
 from designer.effects.effect import Effect, Setting, Values
 
 _JUMP = 1e3
-"""Of the noise, over a thousandth of a parameter's typical size: no slope, but another balance."""
+"""Over the median of all rows' slopes: where poses are fitted, no slope, but another balance."""
 HUBER = 3.0
 """Standard deviations up to which a residual counts by its square: noise exceeds it in 1 of 370."""
 
@@ -258,7 +258,11 @@ def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> Floa
             there = replace(own, values={**own.values, p.name: moved})
             settings_there = tuple(there if s is own else s for s in settings)
             change = problem.in_noise(settings_there) - predicted
-            change[np.abs(change) > _JUMP] = np.nan
+            if problem.predict.row_unknowns:
+                size = np.abs(change)
+                is_usual = np.nan_to_num(size) > 0.0
+                usual = np.median(size[is_usual]) if is_usual.any() else np.inf
+                change[size > _JUMP * usual] = np.nan
             slope = np.where(is_lost, -change / (moved - value), slope)
         slopes.append(np.where(is_read, np.nan_to_num(slope), np.nan))
     return np.stack(slopes, axis=-1)

@@ -32,6 +32,8 @@ _CANDIDATES = 4000
 """Places to start from: neighbours are a sixteenth of the region's side apart."""
 _STEP = 1e-6
 """Over the frame's size: slopes to six digits, as the catenaries have ten."""
+_FAR = 4.0
+"""Over the least loss of a set of effects: where a start is not near what was the best."""
 _STILL = 5e-2
 """Of the noise, or of what is left where that is more: the rest of the way is straight, to a small
 share of this."""
@@ -46,6 +48,7 @@ class FreePredictor(Predictor):
     """Predicts readings of rows without poses, each where it suits its own readings best."""
 
     _near: dict[Kind, tuple[Poses, FloatArray]] = field(init=False, default_factory=dict)
+    _best: dict[Kind, tuple[float, Poses]] = field(init=False, default_factory=dict)
     _first: Poses = field(init=False)
 
     def __post_init__(self) -> None:
@@ -98,6 +101,11 @@ class FreePredictor(Predictor):
         start = self._near.get(kind, self._near.get((noise,)))
         poses, slopes = start if start else (self.measured.poses, None)
         answer, residual = self._left_at(poses, settings, noise)
+        least, best_poses = self._best.get(kind, (np.inf, poses))
+        if _loss(residual).sum() > _FAR * least:  # from far away a row may stay in another balance
+            there = self._left_at(best_poses, settings, noise)[1]
+            poses, slopes = _either(_loss(there) < _loss(residual), best_poses, poses), None
+            answer, residual = self._left_at(poses, settings, noise)
         is_lost = np.asarray((np.abs(residual) >= _UNHELD).any(axis=1))
         if is_lost.any():  # without a slope it would never come back
             poses, slopes = _either(is_lost, self._first, poses), None
@@ -112,6 +120,8 @@ class FreePredictor(Predictor):
                 still = _STILL * np.maximum(1.0, np.abs(residual).max(axis=1))
                 if np.all(np.abs(rest).max(axis=1) < still):
                     self._near[kind] = poses, slopes
+                    if _loss(residual).sum() < least:
+                        self._best[kind] = float(_loss(residual).sum()), poses
                     # And a last short step, which takes that off what is left.
                     return answer[0], self._moved_by(answer[1], rest, noise)
                 trial = moved_poses(self.machine.robot, poses, share[:, None] * step)
