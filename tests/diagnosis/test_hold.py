@@ -30,8 +30,8 @@ def test_a_basis_spans_all_columns_whatever_their_sizes() -> None:
 def test_what_begins_at_a_time_is_taken_back_where_the_rest_goes_with_time(
     carriers: tuple[str, ...], is_withdrawn: bool
 ) -> None:
-    steps = SimpleNamespace(key="load_step", starts_from=lambda *_: [])
-    lasting = SimpleNamespace(key="creep", starts_from=None)
+    steps = SimpleNamespace(key="load_step", starts_from=lambda *_: [], needs={"time"})
+    lasting = SimpleNamespace(key="creep", starts_from=None, needs={"time"})
     present = tuple(Carrier(name, 0.5, 1e-6) for name in carriers)
     for effects, counts in (((lasting, steps), is_withdrawn), ((lasting,), False)):
         outcome: Any = SimpleNamespace(found=effects, structure=SimpleNamespace(present=present))

@@ -36,7 +36,9 @@ def test_a_row_tells_its_slope_from_the_side_on_which_it_is_held():
         measured=SimpleNamespace(is_read=~np.isnan(readings)),
         in_noise=in_noise,
         predicted=in_noise,
-        predict=SimpleNamespace(slopes=KeptSlopes(), distrust=lambda settings, noise: (1.0, 1.0)),
+        predict=SimpleNamespace(
+            slopes=KeptSlopes(), distrust=lambda settings, noise: (1.0, 1.0), row_unknowns=0
+        ),
     )
     slopes = jacobian(problem, [STRETCH], np.array([1.0]))
     # A residual is (measured - predicted) / noise; a row that is held on neither side has no slope.
