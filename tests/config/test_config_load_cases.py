@@ -141,9 +141,9 @@ def test_mistakes(windy: str, faults_of: FaultsOf, case: str, field: str, proble
 
 LINES = {
     "{name: a, winds: 3}": (
-        "load_cases[1].winds: unknown field 'winds' (expected one of name, mass, wrench, "
-        "dynamic_factor, acceleration, wind, ice, cable_lost, temperature_change, safety_factor, "
-        "termination_efficiency, region; did you mean 'wind'?)"
+        "load_cases[1].winds: unknown field 'winds' (expected one of name, mass, inertia, "
+        "wrench, dynamic_factor, acceleration, wind, ice, cable_lost, temperature_change, "
+        "safety_factor, termination_efficiency, region; did you mean 'wind'?)"
     ),
     "{name: a, cable_lost: 4}": (
         "load_cases[1].cable_lost: there is no cable 4, the robot has 3 (expected 1 to 3 or each)"
