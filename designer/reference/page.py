@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from designer import __version__
 from designer.model.verdict import Verdict
-from designer.reference import robots, single_cables
+from designer.reference import machines, robots, single_cables
 from designer.reference.case import Figure, ReferenceCase
 
 CASPR, WIREX = "CASPR", "WireX"
@@ -83,7 +83,7 @@ ROBOTS = (
 )  # fmt: skip
 
 
-CASES: tuple[ReferenceCase, ...] = (*robots.CASES, *single_cables.CASES)
+CASES: tuple[ReferenceCase, ...] = (*robots.CASES, *single_cables.CASES, *machines.CASES)
 HEADINGS = ("unit", "theirs", "ours", "difference", "allowed", "")
 Computed = Sequence[tuple[ReferenceCase, Sequence[Figure]]]
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from designer.cli.commands import main
+from designer.reference import machines
 from designer.reference.case import Figure, ReferenceCase, as_printed
 from designer.reference.page import CASES, ROBOTS, compute, markdown
 from designer.reference.single_cables import LINES, WRONG_IN_MOORPY
@@ -19,7 +20,7 @@ def test_every_figure_is_as_near_as_its_source_allows(case: ReferenceCase) -> No
     assert figures
     for one in figures:
         assert one.holds, one
-        assert one.tolerance is None or one.tolerance <= 1e-2
+        assert one.tolerance is None or one.tolerance <= (0.3 if case in machines.CASES else 1e-2)
 
 
 def test_only_what_is_known_to_be_wrong_goes_unjudged() -> None:
