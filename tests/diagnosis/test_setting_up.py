@@ -36,7 +36,7 @@ SPAN110 = replace(
 """A robot of 110 m."""
 
 
-ENDS = ("anchor_offset", "attachment_offset")
+ENDS = ("anchor_offset", "attachment_offset", "drum_eccentricity")
 
 
 def diagnosed(dataset: DataSet, folder: Path, unknown: tuple[str, ...] = ()) -> Diagnosis:
@@ -49,9 +49,10 @@ def diagnosed(dataset: DataSet, folder: Path, unknown: tuple[str, ...] = ()) -> 
 
 
 def assert_found_alone(found: Diagnosis, dataset: DataSet) -> None:
-    """Name what is in the data, with its numbers; in its place at most one end of the cable.
+    """Name what is in the data, with its numbers; as a rival at most an end or drum of the cable.
 
-    Over a small region, one that moves along the cable is a homing error to first order.
+    Over a small region, an end that moves along the cable is a homing error to first order, and a
+    slow wave of its drum, which has four numbers, is much alike.
     """
     ((effect, true),) = dataset.effects.items()
     assert [finding.effect.id for finding in found.findings] == [effect]

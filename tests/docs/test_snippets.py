@@ -35,7 +35,14 @@ _SELDOM = {
     *("first", "second", "correlation"),  # of parameters that data tell badly apart
     # Of findings, each of which some studies have.
     *("policy", "depth_m", "inradius_m", "lowest_z_m"),
-    *("share", "rotation_vector", "wind_direction", "inertia_direction", "force_N"),
+    *(
+        "lowest_frequency_Hz",
+        "share",
+        "rotation_vector",
+        "wind_direction",
+        "inertia_direction",
+        "force_N",
+    ),
 }
 """Keys that not every result has."""
 

@@ -19,6 +19,7 @@ from designer.report.design.drawings import Drawings
 from designer.report.design.report import design_report, section
 from designer.report.figures.sections import section_map
 from designer.report.render import render_html
+from designer.selection.qualities import Qualities
 
 pytestmark = pytest.mark.slow
 
@@ -53,6 +54,13 @@ Solve = Callable[[str], Analysis]
 @pytest.fixture(scope="module")
 def kept(solve: Solve) -> Analysis:
     return solve(SIX.format(region=PRISM, clearance="0.1 m", selection=SELECTION))
+
+
+def surveyed(qualities: Qualities, **surveys: object) -> Qualities:
+    """Return qualities whose surveys have come to something else."""
+    changed = replace(qualities)
+    vars(changed).update(surveys)
+    return changed
 
 
 @pytest.fixture(scope="module")
@@ -117,14 +125,15 @@ def test_a_clearance_broken_between_samples_only(not_kept: Analysis) -> None:
     found = not_kept.qualities
     assert found is not None and found.interference is not None
     none_of_the_samples = replace(found.interference, violating=0)
-    changed = altered(not_kept, qualities=replace(found, interference=none_of_the_samples))
+    changed = altered(not_kept, qualities=surveyed(found, interference=none_of_the_samples))
     assert "only between the samples" in said(section(Drawings(changed), "clearance"))
 
 
 def test_unstable_poses_are_told(kept: Analysis) -> None:
     found = kept.qualities
     assert found is not None and found.stiffness is not None
-    shaky = replace(found, stiffness=replace(found.stiffness, unstable=3, softest_m_per_N=np.inf))
+    softest = replace(found.stiffness, unstable=3, softest_m_per_N=np.inf)
+    shaky = surveyed(found, stiffness=softest)
     shown = section(Drawings(altered(kept, qualities=shaky)), "stiffness")
     verdict = statements(shown)["Some poses are not stable"]
     assert verdict.tone == "bad"
