@@ -37,7 +37,7 @@ def other_value(one: Field, rng: random.Random) -> str:
         return str(int(one.value_SI or 1) + 1)
     low, high = one.low, one.high
     if low is None or high is None:
-        return one.text_of((one.value_SI or 0.0) + 0.1)
+        return one.text_of(1.1 * (one.value_SI or 0.0) + 0.1)
     return one.text_of(low + rng.uniform(0.2, 0.8) * (high - low))
 
 
