@@ -37,7 +37,8 @@ def other_value(one: Field, rng: random.Random) -> str:
         return str(int(one.value_SI or 1) + 1)
     low, high = one.low, one.high
     if low is None or high is None:
-        return one.text_of(1.1 * (one.value_SI or 0.0) + 0.1)
+        value = one.value_SI or 0.0
+        return one.text_of(value + (0.1 if abs(value) < 1e4 else 0.1 * value))
     return one.text_of(low + rng.uniform(0.2, 0.8) * (high - low))
 
 
