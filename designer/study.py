@@ -178,6 +178,7 @@ class StudySource:
     entries: tuple[Entry, ...]  # Every field, for the report's table of inputs
     # Line of each field that the file gives, by its path
     lines: Mapping[str, int] = field(default_factory=dict, repr=False, hash=False)
+    tables: tuple[tuple[str, str], ...] = ()  # Name and digest of each file that it was read with
 
     def fault(self, field: str, problem: str, expected: str = "") -> Fault:
         """Return a fault at a field of the config file.

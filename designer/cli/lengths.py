@@ -32,6 +32,7 @@ def lengths(
     """Give the unstrained lengths and tensions at poses of yours, with the chosen rope.
 
     Writes the poses with the length of each cable, its tension at the exit point, and a verdict.
+    Without rx_rad, ry_rad and rz_rad a platform is turned as the workspace has it, if in one way.
 
     Example:  designer lengths crane.yaml --poses path.csv -o winches.csv
 
@@ -39,11 +40,12 @@ def lengths(
     """
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
     from designer.io.output import write_file
-    from designer.io.poses import read_poses
+    from designer.io.poses import poses_in, read_poses
     from designer.study import declared_settings
 
     study, plugins = study_of(config, no_plugins)
     table = read_poses(poses, study.robot)
+    turned = poses_in(study.workspace, table)
     catalogue = catalogue_of(study, plugins)
     announce_compiling()
 
@@ -51,7 +53,7 @@ def lengths(
     from designer.analysis.lengths import lengths_of
 
     with ProgressBars() as bars:
-        answer = lengths_of(Analysis.begin(study, catalogue, reporter=bars), table.poses)
+        answer = lengths_of(Analysis.begin(study, catalogue, reporter=bars), turned)
     if answer is None:
         show("No rope serves this study, so there are no lengths: see designer report.")
         return False

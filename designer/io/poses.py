@@ -17,6 +17,7 @@ from designer.measured.assign import POSITION, ROTATION_VECTOR, unit_faults
 from designer.measured.formats import read_table
 from designer.measured.table import LogTable, RawColumn
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 
 _OFF_PLANE = 1e-6
 """What counts as out of a planar robot's plane, over the extent of its exit points, or [rad]."""
@@ -43,6 +44,8 @@ class PoseTable:
         The load case that each pose is for, empty for all; none without that column.
     left_out : tuple of str
         Columns that hold texts.
+    sha256 : str
+        Digest of the file's bytes.
     """
 
     names: tuple[str, ...]
@@ -50,6 +53,7 @@ class PoseTable:
     places: FloatArray
     load_cases: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
+    sha256: str = ""
 
     @property
     def poses(self) -> Poses:
@@ -99,7 +103,18 @@ def read_poses(path: Path, robot: Robot, error_of: ErrorOf = _OF_OPTION) -> Pose
         place,
         _load_cases(columns[_LOAD_CASE], table.n_rows) if _LOAD_CASE in columns else (),
         tuple(c.name for c in table.columns if c.n_texts and c.name != _LOAD_CASE),
+        table.sha256,
     )
+
+
+def poses_in(workspace: Workspace | None, table: PoseTable) -> Poses:
+    """Return the poses of a table; without orientations turned as the workspace has it there.
+
+    That is where it asks for one orientation, fixed or by a law; else they are level.
+    """
+    if workspace is None or workspace.orientations.count > 1 or table.places.shape[1] == 6:
+        return table.poses
+    return Poses.at(workspace.space.places(table.places))
 
 
 def _load_cases(column: RawColumn, n_rows: int) -> tuple[str, ...]:

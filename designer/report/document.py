@@ -158,6 +158,7 @@ def control_of(study: Study, catalogue: Catalogue | None = None) -> Control:
 def _digests(study: Study, catalogue: Catalogue | None) -> Iterator[tuple[str, str]]:
     if study.source.sha256:
         yield "SHA-256 of configuration", study.source.sha256
+    yield from study.source.tables
     for source in catalogue.sources if catalogue is not None else ():
         if source.n_grades:
             yield f"grades {source.name}", source.sha256

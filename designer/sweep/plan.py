@@ -227,8 +227,10 @@ def read_sweep(path: Path, with_plugins: bool) -> SweepPlan:
     columns = columns_of(
         tuple(fields.values()), section.sampling, section.points or 0, section.seed
     )
-    grades = [source.sha256 for source in base.catalogue().sources]
-    origin = [document.root.as_written(), base.document.sha256, *grades, __version__]
+    study = base.study()
+    files = [source.sha256 for source in base.catalogue(study).sources]
+    files += [sha256 for _, sha256 in study.source.tables]
+    origin = [document.root.as_written(), base.document.sha256, *files, __version__]
     digest = hashlib.sha256(json.dumps(origin).encode()).hexdigest()
     return SweepPlan(base, columns, kinds, goals, digest)
 

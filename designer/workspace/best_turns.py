@@ -73,11 +73,10 @@ class BestTurns(Following):
     def excess(self) -> float:
         """By how much the law needs a thicker cable than the best orientations, relative.
 
-        The largest diameter of each, at positions between those of the table; infinite where the
-        law does not hold and another orientation does; zero for a list of points, which are all
-        in the table.
+        The largest diameter of each, at other positions than those of the table; infinite where
+        the law does not hold and another orientation does; zero where the table has all.
         """
-        if self.region.is_discrete:
+        if self._has_all:
             return 0.0
         positions = self._positions_m(_CHECKED, 1)
         best = self.best(positions)[1]
@@ -87,12 +86,25 @@ class BestTurns(Following):
         largest = self._diameter_m(places, is_quick=False).max()
         return max(float(largest / best[np.isfinite(best)].max()) - 1.0, 0.0)
 
-    def _positions_m(self, count: int, seed: int) -> FloatArray:
-        """Return positions of the region, no two alike; the first time its landmarks as well."""
+    @property
+    def _has_all(self) -> bool:
+        """Whether the table has all positions that are asked for, of a list."""
+        return self.region.is_discrete and len(self._drawn_m(_NODES, 0)) <= _NODES
+
+    def _drawn_m(self, count: int, seed: int) -> FloatArray:
+        """Return positions of the region, no two alike; a list of points is taken whole."""
         drawn = np.concatenate([*self.region.samples_m(count, "low_discrepancy", seed)])
+        return np.unique(drawn, axis=0)
+
+    def _positions_m(self, count: int, seed: int) -> FloatArray:
+        """Return about so many of them, some of a list; the first time landmarks as well."""
+        drawn = self._drawn_m(count, seed)
+        if self.region.is_discrete:
+            order = np.random.default_rng(seed).permutation(len(drawn))
+            return frozen_array(drawn[np.sort(order[:count])])
         if seed == 0:
-            drawn = np.concatenate([self.region.border().landmarks_m(), drawn])
-        return frozen_array(np.unique(drawn, axis=0))
+            drawn = np.unique(np.vstack([self.region.border().landmarks_m(), drawn]), axis=0)
+        return frozen_array(drawn)
 
     def best(self, positions_m: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the best rotation vectors at positions (n, 3) [rad], and what is needed there [m].
@@ -151,7 +163,7 @@ class BestTurns(Following):
             f"at {_CHECKED} others the thickest cable along this law is {self.excess:.1%} thicker "
             "than in the best orientation of each"
         )
-        if self.region.is_discrete:
+        if self._has_all:
             costs = "there are no others"
         return (
             f"in the orientation between {low} and {high} degrees that needs the thinnest cable, "

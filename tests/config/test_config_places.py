@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from designer.errors import InputError
 from designer.io.config import read_study
+from designer.io.poses import poses_in, read_poses
 from designer.model.robot import Poses
 from designer.model.turning import EachPose, Toward, TurnTable
 from designer.sizing.newton import size_poses
@@ -144,6 +145,41 @@ def test_a_free_orientation_is_as_good_as_brute_force(seed: int, study_of: Study
     assert f"{law.excess:.1%} thicker" in law.words
 
 
+def test_a_long_list_is_free_between_some_of_its_poses(study_of: StudyOf) -> None:
+    positions = np.random.default_rng(5).uniform([-2, -2, 1], [2, 2, 4], (900, 3))
+    rows = "\n".join(",".join(f"{x:.3f}" for x in position) for position in positions)
+    free = "poses: list.csv\n  orientation_free: {rx: [-10 deg, 10 deg]}"
+    study = study_of(free, list="x_m,y_m,z_m\n" + rows)
+    assert study.workspace is not None
+    law = study.workspace.orientations.law
+    assert isinstance(law, BestTurns)
+    assert len(law.table.positions_m) <= 256
+    assert "at 64 others" in law.words
+    assert len(np.concatenate([*study.workspace.places()])) == 900
+
+
+def test_what_a_study_was_read_with_is_told(study_of: StudyOf) -> None:
+    text = POSES + "0,0,2,0,0,0,"
+    digests = {study_of("poses: list.csv", list=text + end).source.tables for end in ("", "\n")}
+    assert {name for ((name, _),) in digests} == {"list.csv"}
+    assert len(digests) == 2
+    assert study_of(BOX).source.tables == ()
+
+
+def test_lengths_are_asked_for_as_the_workspace_turns_the_platform(
+    study_of: StudyOf, tmp_path: Path
+) -> None:
+    study = study_of(f"{BOX}\n  orientation: {{toward: [0, 0, 30]}}")
+    assert study.workspace is not None
+    (tmp_path / "asked.csv").write_text("x_m,y_m,z_m\n1,1,2\n")
+    table = read_poses(tmp_path / "asked.csv", study.robot)
+    law = Toward(np.array([0.0, 0.0, 30.0]))
+    (place,) = poses_in(study.workspace, table).place
+    assert place[3:] == pytest.approx(law.turns_rad(np.array([[1.0, 1.0, 2.0]]))[0, 0])
+    several = study_of(f"{BOX}\n  orientations: [[0, 0, 0], [0, 0.1, 0]]").workspace
+    assert not poses_in(several, table).place[:, 3:].any()
+
+
 WRONG = [
     ("poses: list.csv", "", r"body.yaml:9: workspace.poses: .*list.csv: "),
     ("poses: list.csv\n  region: {box: [[0, 1], [0, 1], [0, 1]]}", POSES, "has region and poses"),
@@ -168,7 +204,12 @@ WRONG = [
     (
         "poses: list.csv\nload_cases: [{name: a, region: {points: [[0, 0, 1]]}}]",
         POSES + "0,0,2,0,0,0,a",
-        r"load_cases\[0\].region: the list of workspace.poses names load cases",
+        r"load_cases\[0\].region: the list of workspace.poses says where",
+    ),
+    (
+        "poses: list.csv\nload_cases: [{name: a, region: {points: [[0, 0, 1]]}}]",
+        POSES + "0,0,2,0,0.1,0,",
+        r"load_cases\[0\].region: the list of workspace.poses says where",
     ),
     (
         "poses: list.csv\nload_cases: [{name: a}, {name: b}]",

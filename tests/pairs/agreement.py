@@ -17,7 +17,14 @@ from pairs.quantities import (
     sag_ratio,
 )
 from pairs.reference import Pose, Problem, State, feasible, hang, load_on, settle, solve
-from pairs.scenario import growth_of, level_directions, problem_of, random_places, up_of
+from pairs.scenario import (
+    growth_of,
+    level_directions,
+    problem_of,
+    random_places,
+    turn_toward,
+    up_of,
+)
 
 from designer.analysis.analyse import Analysis
 from designer.model.load_case import Loaded
@@ -224,6 +231,11 @@ def _requirement(text, ropes, analysis: Analysis, one: Requirement) -> Iterator[
     there = Situation(text, ropes, case, loaded.wind, loaded.inertia, loaded.lost_cable)
     quantity = QUANTITIES[one.id]
     name = f"{one.load_case} {one.direction} {one.id}"
+    facing = text["workspace"].get("orientation")
+    if isinstance(facing, dict):
+        turn = turn_toward(one.place[:3], facing)
+        if not np.allclose(one.place[3:], turn, rtol=0.0, atol=1e-9):
+            yield f"{name}: turned by {one.place[3:]}, reference {turn}"
     state = state_at(there, loaded, one.place)
     if state is None:
         yield f"{name}: the reference does not hold {one.place}"

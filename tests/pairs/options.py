@@ -338,6 +338,12 @@ OPTIONS: tuple[Option, ...] = (
         BODY,
         _set("workspace.orientation_range", {"ry": [-0.03, 0.05]}),
     ),
+    Option(
+        "toward",
+        "orientation toward a point",
+        BODY,
+        _set("workspace.orientation", {"toward": [1.0, -2.0, 40.0], "axis": [0.0, 0.05, 1.0]}),
+    ),
     Option("box", "region with a volume", ALL, _box),
     Option("fibre", "fibre rope", ALL, _set("selection.grades", ["pairs-fibre"])),
     Option("tension_min", "least tension", REDUNDANT, _set("robot.tension_min", 40.0)),

@@ -171,11 +171,23 @@ def random_places(study: Data, case: Data, count: int, rng: np.random.Generator)
             plan = first + shares[:, :1] * (last - first)
             height = heights[0] + shares[:, 2] * (heights[1] - heights[0])
             positions = np.column_stack([plan, height])
+    facing = study["workspace"].get("orientation")
+    if isinstance(facing, dict):
+        return [Pose(position, turn_toward(position, facing)) for position in positions]
     turns = turns_of(study, max(count, 1), rng)
     if "points" in region and len(turns) < count:
         return [Pose(position, turn) for position in positions for turn in turns]
     at = rng.integers(len(positions), size=count) if "points" in region else np.arange(count)
     return [Pose(positions[k], turns[rng.integers(len(turns))]) for k in at]
+
+
+def turn_toward(position: np.ndarray, facing: Data) -> np.ndarray:
+    """Return the shortest turn that brings an axis to face a point, by the half-way quaternion."""
+    axis = np.array(facing["axis"]) / np.linalg.norm(facing["axis"])
+    along = np.array(facing["toward"]) - position
+    along = along / np.linalg.norm(along)
+    quaternion = np.append(np.cross(axis, along), 1.0 + axis @ along)
+    return Rotation.from_quat(quaternion).as_rotvec()
 
 
 def turns_of(study: Data, count: int, rng: np.random.Generator) -> list[np.ndarray]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
@@ -28,10 +28,20 @@ Listed = tuple[Region, Orientations]
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """The workspace of a study, and what of a list of poses is for one load case alone."""
+    """The workspace of a study, and what of a list of poses is for one load case alone.
+
+    ``tables`` are the names and digests of the files that it was read with.
+    """
 
     workspace: Workspace | None
     of_cases: Mapping[str, Listed] = field(default_factory=dict)
+    tables: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def are_turned_one_by_one(self) -> bool:
+        """Whether only listed poses have an orientation."""
+        law = None if self.workspace is None else self.workspace.orientations.law
+        return isinstance(law, EachPose)
 
 
 def places_of(
@@ -48,10 +58,12 @@ def places_of(
     if workspace is None:
         return Places(None)
     build = _Places(document, robot, material)
-    if workspace.region is not None:
+    if workspace.region is None:
+        places = build.listed(workspace, [case.name for case in section.load_cases])
+    else:
         region = workspace.region.over(robot.exit_points_m)
-        return Places(workspace.workspace(region, build.orientations(workspace, region)))
-    return build.listed(workspace, [case.name for case in section.load_cases])
+        places = Places(workspace.workspace(region, build.orientations(workspace, region)))
+    return replace(places, tables=tuple(build.tables))
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,13 +71,16 @@ class _Places:
     document: Document
     robot: Robot
     material: Material
+    tables: list[tuple[str, str]] = field(default_factory=list)
 
     def _error(self, keys: Keys, problem: str, expected: str = "") -> InputError:
         return InputError([self.document.fault(keys, problem, expected)])
 
     def _table(self, keys: Keys, name: str) -> PoseTable:
         path = Path(self.document.name).parent / name
-        return read_poses(path, self.robot, partial(self._error, keys))
+        table = read_poses(path, self.robot, partial(self._error, keys))
+        self.tables.append((name, table.sha256))
+        return table
 
     def orientations(self, section: WorkspaceSection, region: Region) -> Orientations:
         """Return how the platform is turned over a region."""

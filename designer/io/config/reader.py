@@ -85,7 +85,7 @@ def study_of(
         name=section.name or path.stem,
         robot=robot,
         material=material,
-        source=StudySource(path, document.sha256, given, lines),
+        source=StudySource(path, document.sha256, given, lines, places.tables),
         pose=None if pose is None else pose.poses(),
         workspace=places.workspace,
         selection=None if selection is None else selection.selection(),
@@ -158,9 +158,10 @@ def _case_places(
     of_list = places.of_cases.get(section.name, (None, None))
     if section.region is None:
         return of_list
-    if of_list[0] is not None:
-        problem = "the list of workspace.poses names load cases already"
-        raise InputError([document.fault(("load_cases", index, "region"), problem, "one of them")])
+    if of_list[0] is not None or places.are_turned_one_by_one:
+        problem = "the list of workspace.poses says where the platform is, and how it is turned"
+        expected = "poses of that list for this load case, in its column load_case"
+        raise InputError([document.fault(("load_cases", index, "region"), problem, expected)])
     try:
         return section.region.over(robot.exit_points_m), None
     except ValueError as error:  # QhullError is one
