@@ -242,7 +242,7 @@ def _named(
         for name, cable in bare
         for quantity, value, unit in (
             ("modulus", cable.axial_stiffness_N, "N"),
-            ("linear_mass", cable.linear_density_kg_per_m, "kg/m"),
+            ("linear_mass", cable.rope_density_kg_per_m, "kg/m"),
         )
     }
     return (
@@ -287,8 +287,7 @@ def payload_scaled(loaded: Loaded, factor: float) -> Loaded:
 def with_density(loaded: Loaded, factor: float) -> Loaded:
     """Return the same with a rope so many times as heavy."""
     robot, cable = loaded.bare
-    heavier = replace(cable, linear_density_kg_per_m=factor * cable.linear_density_kg_per_m)
-    return loaded.on(robot, heavier)
+    return loaded.on(robot, cable.with_rope_scaled(factor))
 
 
 def with_stiffness(loaded: Loaded, factor: float) -> Loaded:

@@ -130,7 +130,7 @@ def _measurements(study: Study, rope: Cable) -> Measurements:
     from designer.model.measurements import Measurements
 
     return study.measurements or Measurements(
-        Path("measured.csv"), rope.linear_density_kg_per_m, rope.axial_stiffness_N
+        Path("measured.csv"), rope.rope_density_kg_per_m, rope.axial_stiffness_N
     )
 
 

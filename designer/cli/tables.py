@@ -137,8 +137,11 @@ def _summary_of_selection(
             tension = f"{verification.max_tension_N / 1e3:.4g} kN"
             used = f"{verification.utilisation:.1%}, cable {cable} with {tension}"
             yield f"  {escape(result.case.name)}", f"{used}, at ({at}) m{more}"
-    mass = f"{chosen.cable.linear_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
+    mass = f"{chosen.cable.rope_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
     yield "  mass", mass
+    attached = chosen.cable.attached.linear_density_kg_per_m
+    if attached:
+        yield "  attached along it", f"{attached:.4g} kg/m"
 
 
 def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from designer.effects.effect import Setting, as_built
 from designer.errors import EffectError
-from designer.model.cable import Cable, Material
+from designer.model.cable import NOTHING_ATTACHED, Cable, Material
 from designer.model.machine import Machine
 from designer.model.robot import Robot
 
@@ -67,8 +67,8 @@ class AsBuilt:
     def is_family(self, material: Material) -> bool:
         """Tell whether the members of a family are one on this machine as well.
 
-        They are where every effect scales; not where one adds, such as a film of ice, which is
-        little on a thick cable and much on a thin one.
+        They are where every effect scales; not where one adds, such as a film of ice or a hose
+        along the cable, which is little on a thick cable and much on a thin one.
         """
         reference, *cables = (astuple(self._at(material, d)) for d in _PROBES_M)
         return all(np.allclose(cable, reference, rtol=_SAME, atol=0.0) for cable in cables)
@@ -110,7 +110,8 @@ SettingsOf = Callable[[Machine], Sequence[Setting]]
 def built_with(machine: Machine, settings_of: SettingsOf) -> AsBuilt:
     """Return the robot and its cables with the effects that act on the machine.
 
-    Each cable meets the effects with its own figures, in the machine's declared surroundings.
+    Each cable meets the effects with its own figures, in the machine's declared surroundings, and
+    then gets what is attached along it.
 
     Raises
     ------
@@ -132,8 +133,12 @@ def built_with(machine: Machine, settings_of: SettingsOf) -> AsBuilt:
             "cannot be chosen then (expected effects that change robot or cable, not one by the "
             "other)",
         )
-    has_none = not any(s.effect.on_machine for s in settings_of(machine))
-    return AsBuilt(thin, _unchanged if has_none else lambda cable: built(cable).cable)
+    attached = machine.robot.attached
+    has_effects = any(s.effect.on_machine for s in settings_of(machine))
+    is_changed = has_effects or attached != NOTHING_ATTACHED
+    return AsBuilt(
+        thin, (lambda cable: attached.on(built(cable).cable)) if is_changed else _unchanged
+    )
 
 
 def _is_same(robot: Robot, before: Robot) -> bool:

@@ -54,6 +54,30 @@ class Stiffening:
 
 
 @dataclass(frozen=True, slots=True)
+class Attached(checked.Value):
+    """What is clipped along a cable, such as a power line or a hose: it weighs, and bears nothing.
+
+    Parameters
+    ----------
+    linear_density_kg_per_m : float
+        Its mass per unstrained length of the cable [kg/m].
+    diameter_m : float
+        Its diameter, in wind and ice [m].
+    """
+
+    linear_density_kg_per_m: checked.NotNegative = 0.0
+    diameter_m: checked.NotNegative = 0.0
+
+    def on(self, rope: Cable) -> Cable:
+        """Return a bare rope with this along it."""
+        density = rope.linear_density_kg_per_m + self.linear_density_kg_per_m
+        return replace(rope, linear_density_kg_per_m=density, attached=self)
+
+
+NOTHING_ATTACHED = Attached()
+
+
+@dataclass(frozen=True, slots=True)
 class Cable:
     """One cable that can be bought or computed.
 
@@ -62,7 +86,7 @@ class Cable:
     diameter_m : float
         Nominal diameter [m]; NaN where it is not known.
     linear_density_kg_per_m : float
-        Mass per unstrained length [kg/m].
+        Mass per unstrained length, with what is attached along it [kg/m].
     axial_stiffness_N : float
         EA, force per strain [N]; ``inf`` for an inextensible cable.
     allowable_tension_N : float
@@ -72,6 +96,8 @@ class Cable:
     stiffening : Stiffening or None
         How EA depends on the tension; None where it does not. ``axial_stiffness_N`` is then one
         value of it, which `designer.selection.stiffening` takes at the largest tension met.
+    attached : Attached
+        What is clipped along it; all other figures but the mass are those of the rope alone.
     """
 
     diameter_m: float
@@ -80,6 +106,7 @@ class Cable:
     allowable_tension_N: Unlimited
     expansion_per_K: checked.Finite = STEEL_EXPANSION_PER_K
     stiffening: Stiffening | None = None
+    attached: Attached = NOTHING_ATTACHED
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
@@ -90,6 +117,21 @@ class Cable:
     def weight_N_per_m(self) -> float:
         """Weight per unstrained length [N/m]."""
         return self.linear_density_kg_per_m * STANDARD_GRAVITY_M_PER_S2
+
+    @property
+    def rope_density_kg_per_m(self) -> float:
+        """Mass per unstrained length of the rope alone [kg/m]."""
+        return self.linear_density_kg_per_m - self.attached.linear_density_kg_per_m
+
+    @property
+    def diameters_m(self) -> tuple[float, ...]:
+        """Diameters that wind and ice find: of the rope, and of what is attached [m]."""
+        return tuple(d for d in (self.diameter_m, self.attached.diameter_m) if d != 0.0)
+
+    def with_rope_scaled(self, factor: float) -> Cable:
+        """Return the cable with a rope so many times as heavy; what is attached stays."""
+        density = factor * self.rope_density_kg_per_m + self.attached.linear_density_kg_per_m
+        return replace(self, linear_density_kg_per_m=density)
 
     def at_tension(self, tension_N: float) -> Cable:
         """Return the cable with its EA at a tension [N]; itself where EA does not depend on it."""

@@ -4,7 +4,8 @@ Wind of speed v has the pressure :math:`q = \tfrac12 \varrho v^2`, with 1.25 kg/
 1991-1-4, 4.5). On the platform it makes the force :math:`q\,C_d A`, at the origin of its frame; on
 a cable, per unstrained length, :math:`q\,C_d\,d`, along the wind and at full speed whatever the
 cable's inclination. Ice of thickness t adds the weight :math:`\pi t (d + t) \varrho_i g` and makes
-the cable :math:`d + 2 t` thick in the wind.
+the cable :math:`d + 2 t` thick in the wind. What is attached along a cable is a second cylinder
+beside the rope: in the full wind, and iced all around, as the rope is.
 
 The load per unstrained length is then one constant vector for all cables, so that each is still a
 catenary, in the plane of that vector and its chord: the robot is solved in a frame whose z axis
@@ -84,9 +85,10 @@ class Ice(checked.Value):
     thickness_m: checked.NotNegative
     density_kg_per_m3: checked.Positive = 900.0
 
-    def linear_density_kg_per_m(self, diameter_m: float) -> float:
+    def linear_density_kg_per_m(self, cable: Cable) -> float:
         """Return its mass per length on a cable [kg/m]."""
-        return math.pi * self.thickness_m * (diameter_m + self.thickness_m) * self.density_kg_per_m3
+        around_m = sum(d + self.thickness_m for d in cable.diameters_m)
+        return math.pi * self.thickness_m * around_m * self.density_kg_per_m3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -154,7 +156,7 @@ class Loaded:
     def moving_density_kg_per_m(self) -> float:
         """Mass per length of the cables with ice: wind loads them, and adds none."""
         cable, ice = self.bare[1], self.case.ice
-        around = 0.0 if ice is None else ice.linear_density_kg_per_m(cable.diameter_m)
+        around = 0.0 if ice is None else ice.linear_density_kg_per_m(cable)
         return cable.linear_density_kg_per_m + around
 
     @property
@@ -290,10 +292,10 @@ class LoadCase:
         loaded = replace(robot, platform=body)
         # Weight, ice and drag of a cable per unstrained length, in the world frame.
         ice = self.ice or Ice(0.0)
-        density = cable.linear_density_kg_per_m + ice.linear_density_kg_per_m(cable.diameter_m)
+        density = cable.linear_density_kg_per_m + ice.linear_density_kg_per_m(cable)
         load = -STANDARD_GRAVITY_M_PER_S2 * density * robot.level[2]
         if self.wind is not None and wind is not None:
-            width = cable.diameter_m + 2.0 * ice.thickness_m
+            width = sum(d + 2.0 * ice.thickness_m for d in cable.diameters_m)
             load = load + self.wind.pressure_Pa * self.wind.cable_drag_coefficient * width * wind
         size = float(np.linalg.norm(load))
         if self.wind is not None:

@@ -66,9 +66,13 @@ class Machine:
 
     @property
     def cables(self) -> Cable | Cables:
-        """The cable that is on all winches, or what is on each where they differ."""
+        """The cable that is on all winches, or what is on each where they differ.
+
+        With what is attached along it, of which the effects know nothing.
+        """
+        attached = self.robot.attached
         if self.relative_mass is None and self.relative_stiffness is None:
-            return self.cable
+            return attached.on(self.cable)
         mass, stiffness = (
             np.ones(self.robot.n_cables) if share is None else share
             for share in (self.relative_mass, self.relative_stiffness)
@@ -76,8 +80,7 @@ class Machine:
         return Cables(
             [
                 replace(
-                    self.cable,
-                    linear_density_kg_per_m=self.cable.linear_density_kg_per_m * m,
+                    attached.on(self.cable).with_rope_scaled(m),
                     axial_stiffness_N=self.cable.axial_stiffness_N * s,
                 )
                 for m, s in zip(mass.tolist(), stiffness.tolist(), strict=True)

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from designer import checked
 from designer.arrays import BoolArray, FloatArray, IntArray, frozen_array
-from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
+from designer.model.cable import NOTHING_ATTACHED, STANDARD_GRAVITY_M_PER_S2, Attached
 from designer.model.winches import Winches
 
 
@@ -88,6 +88,8 @@ class Robot:
         length does not count. None for gravity alone. The upright frame is then built from it.
     winches : Winches
         What pulls the cables.
+    attached : Attached
+        What is clipped along each of the cables; see `Attached.on`.
     """
 
     exit_points_m: checked.Points
@@ -105,6 +107,7 @@ class Robot:
     is_planar: bool = False
     cable_load_direction: checked.Vector | None = None
     winches: Winches = field(default_factory=Winches)
+    attached: Attached = NOTHING_ATTACHED
 
     def __post_init__(self) -> None:
         checked.check_fields(self)

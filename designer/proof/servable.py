@@ -11,7 +11,8 @@ In one orientation only e_i changes with the position, linearly: one y does for 
 does at its corners. It is found by a linear programme, which makes the products as clear as they
 can be, and is then evaluated with room for rounding.
 
-That a box can be served is proved with a rope that weighs next to nothing and bears any tension.
+That a box can be served is proved with a rope that weighs next to nothing, beside what is attached
+along it, and bears any tension.
 """
 
 from __future__ import annotations
@@ -73,7 +74,7 @@ def servable(robot: Robot, space: Space, budget: Budget) -> Servable | None:
         return None
     size = float(np.ptp(np.vstack([robot.exit_points_m, space.region.bounds_m]), axis=0).max())
     density = _LIGHT * load_N / size / STANDARD_GRAVITY_M_PER_S2
-    rope = Cable(np.nan, density, np.inf, _STRONG * load_N)
+    rope = robot.attached.on(Cable(np.nan, density, np.inf, _STRONG * load_N))
     covers = [_Part(robot, rope, cover) for cover in covers_of(space)]
     covers[0].compile()  # which is not counted
     began, boxes = time.monotonic(), 0

@@ -111,7 +111,7 @@ class Assignment:
         rope = self.rope
         if rope is not None:
             return rope.total_mass_kg
-        density = np.array([rope.cable.linear_density_kg_per_m for rope in self.by_cable])
+        density = np.array([rope.cable.rope_density_kg_per_m for rope in self.by_cable])
         return float(density @ self.verification.longest_m)
 
     @property

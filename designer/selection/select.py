@@ -314,7 +314,7 @@ class _SelectionRun:
         candidate.cases, candidate.verification = cases, verification
         candidate.cable = as_stiff_as(candidate.cable, governing(cases))
         candidate.figures = CandidateFigures(
-            mass_kg=candidate.cable.linear_density_kg_per_m * length_m,
+            mass_kg=candidate.cable.rope_density_kg_per_m * length_m,
             cost=cost(candidate, length_m, self.currency),
             drum_diameter_m=ratio.suggested * candidate.size.diameter_m if ratio else math.nan,
             max_tension_N=verification.max_tension_N,

@@ -308,7 +308,7 @@ def test_one_cable_differs_from_the_others(machine, measured):
     heavier = machine_with(softer, "cable_mass", 3, scale=2.0)
     assert heavier.cables.axial_stiffness_N == pytest.approx([5e6, 2.5e6, 5e6])
     assert heavier.cables.linear_density_kg_per_m == pytest.approx([0.4, 0.4, 0.8])
-    assert machine.cables is CABLE
+    assert machine.cables == CABLE
     grown = readings_of(
         machine, measured, "cable_creep", 2, strain_per_decade=1e-3, onset_s=100.0
     ).length_m

@@ -143,9 +143,11 @@ def diagnose(text: Mapping[str, Any], analysis: Analysis, folder: Path) -> Itera
         },
         "noise": {"length": 1e-4, "tension": 1.0},
     }
+    line = text["robot"].get("attached", {}).get("linear_mass", 0.0)
+    heavier = effects.get("linear_mass", {}).get("scale", 1.0) * size["linear_mass"] + line
     problem = replace(
         problem,
-        load_N_per_m=problem.load_N_per_m * effects.get("linear_mass", {}).get("scale", 1.0),
+        load_N_per_m=problem.load_N_per_m * heavier / (size["linear_mass"] + line),
         stiffness_N=problem.stiffness_N * effects.get("elastic_modulus", {}).get("scale", 1.0),
     )
     drum = effects.get("drum_scale", {}).get("scale", 1.0)

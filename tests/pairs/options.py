@@ -369,6 +369,12 @@ OPTIONS: tuple[Option, ...] = (
     Option("platform_frequency", "frequency of the platform", ALL, _frequency),
     Option("duty_class", "duty class", ALL, _duty_class),
     Option("winch_tension", "largest tension", ALL, _set("robot.winches", {"tension_max": 900.0})),
+    Option(
+        "attached",
+        "line along the cables",
+        ALL,
+        _set("robot.attached", {"linear_mass": 0.35, "diameter": 0.012}),
+    ),
     Option("sheave", "sheave", ALL, _set("selection.sheave_diameter", 0.2)),
     Option("fitting", "end fittings", ALL, _set("selection.termination_efficiency", 0.9)),
     Option("groups", "groups of cables", ALL, _groups),

@@ -120,11 +120,15 @@ def problem_of(
     ice = case.get("ice") or {"thickness": 0.0}
     t, iced = ice["thickness"], ice.get("density", 900.0)
     loads, masses = [], []
+    line = robot.get("attached")  # a second cylinder along each rope
     for _, size in ropes:
-        masses.append(size["linear_mass"] + np.pi * t * (size["diameter"] + t) * iced)
+        cylinders = [(size["linear_mass"], size["diameter"])]
+        cylinders += [(line["linear_mass"], line["diameter"])] if line else []
+        masses.append(sum(m + np.pi * t * (d + t) * iced for m, d in cylinders))
         load = -GRAVITY * masses[-1] * up
         if wind is not None:
-            load = load + pressure * cable["drag_coefficient"] * (size["diameter"] + 2.0 * t) * wind
+            width = sum(d + 2.0 * t for _, d in cylinders)
+            load = load + pressure * cable["drag_coefficient"] * width * wind
         loads.append(load)
     sag = study["workspace"].get("sag", SAG_MAX)
     return Problem(

@@ -50,8 +50,7 @@ class Draws:
         loaded = payload_scaled(loaded, float(self.payload[k]))
         robot, rope = loaded.bare
         drawn = replace(
-            rope,
-            linear_density_kg_per_m=self.linear_mass[k] * rope.linear_density_kg_per_m,
+            rope.with_rope_scaled(float(self.linear_mass[k])),
             axial_stiffness_N=self.modulus[k] * rope.axial_stiffness_N,
             allowable_tension_N=self.breaking_load[k] * rope.allowable_tension_N,
         )

@@ -91,9 +91,12 @@ class GoverningCandidates:
         return np.asarray(tension / loaded.cable.allowable_tension_N)
 
     def _ropes(self, draws: Draws) -> FloatArray:
-        """Return mass per length, EA and allowable tension of each draw (n, 3); ice stays."""
+        """Return mass per length, EA and allowable tension of each draw (n, 3).
+
+        Ice stays, and what is attached along the rope.
+        """
         loaded, bare = self.loaded, self.loaded.bare[1]
-        added = (draws.linear_mass - 1.0) * bare.linear_density_kg_per_m
+        added = (draws.linear_mass - 1.0) * bare.rope_density_kg_per_m
         return np.column_stack(
             [
                 loaded.cable.linear_density_kg_per_m + added,

@@ -13,6 +13,7 @@ from designer.documents.bounds import MOST_CABLES
 from designer.documents.fields import Text, WholeNumber, list_of, only_word
 from designer.documents.section import Section, config_field
 from designer.io.config.regions import AnyRegion, Box, only_one_of
+from designer.model.cable import NOTHING_ATTACHED, Attached
 from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import Region
 from designer.model.robot import Platform, Robot
@@ -126,6 +127,21 @@ class WinchesSection(Section):
         )
 
 
+class AttachedSection(Section):
+    """What is clipped along each cable, such as a power line or a hose; it bears no tension."""
+
+    linear_mass: fields.LinearDensity = config_field(
+        "Mass along the cables", expected="a mass per length such as '0.4 kg/m'"
+    )
+    """Mass per length of what is clipped along each cable: it hangs on the rope, and is none of
+    the rope's own mass, price and stiffness."""
+    diameter: fields.RopeDiameter = config_field(
+        "Diameter along the cables", expected="a length such as '12 mm'"
+    )
+    """Diameter of what is clipped along each cable, beside the rope in wind and ice. Clearances are
+    those of the ropes' axes, without it."""
+
+
 class RobotSection(Section):
     """The machine."""
 
@@ -142,6 +158,8 @@ class RobotSection(Section):
     freedom."""
     winches: WinchesSection = WinchesSection()
     """What pulls the cables: all winches are alike."""
+    attached: AttachedSection | None = None
+    """What is clipped along each cable, the same along all, such as a power line or a hose."""
 
     def robot(self) -> Robot:
         """Return the robot."""
@@ -152,6 +170,9 @@ class RobotSection(Section):
             gravity_direction=frozen_array(self.gravity),
             is_planar=self.planar,
             winches=self.winches.winches(),
+            attached=NOTHING_ATTACHED
+            if self.attached is None
+            else Attached(self.attached.linear_mass, self.attached.diameter),
         )
 
 

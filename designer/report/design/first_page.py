@@ -190,7 +190,7 @@ def _strength(analysis: Analysis, chosen: Candidate) -> Context:
     efficiency = chosen.efficiency
     if case.termination_efficiency is not None:
         efficiency = allowable_N * required / size.minimum_breaking_load_N
-    built, table = chosen.cable.linear_density_kg_per_m, size.linear_density_kg_per_m
+    built, table = chosen.cable.rope_density_kg_per_m, size.linear_density_kg_per_m
     strength_N = efficiency * size.minimum_breaking_load_N
     return {
         "allowable_N": allowable_N,

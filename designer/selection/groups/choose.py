@@ -169,7 +169,7 @@ class _GroupSearch:
         self.by_weight = is_monotone(robot, workspace)
         self.per_metre = np.array(  # what a metre adds to the objective
             [
-                (c.size.price_per_m or 0.0) if by_price else c.cable.linear_density_kg_per_m
+                (c.size.price_per_m or 0.0) if by_price else c.cable.rope_density_kg_per_m
                 for c in products
             ]
         )
