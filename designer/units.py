@@ -75,6 +75,8 @@ SPEED = Dimension("a speed", "m/s", "3 m/s")
 FREQUENCY = Dimension("a frequency", "Hz", "2 Hz")
 STIFFNESS = Dimension("a force per displacement", "N/m", "50 kN/m")
 INERTIA = Dimension("a moment of inertia", "kg*m^2", "300 kg*m^2")
+ROTATIONAL_SPEED = Dimension("a rotational speed", "rad/s", "3000 rpm")
+POWER = Dimension("a power", "W", "5 kW")
 ACCELERATION = Dimension("an acceleration", "m/s^2", "0.5 m/s^2")
 
 SCALES = {

@@ -169,3 +169,32 @@ def test_effects_that_are_not_in_the_lengths_are_named(tmp_path, designer) -> No
     assert "pose_shift" in told
     assert "elastic_modulus" not in told
     assert "do not reach a design, and are not in them" in told
+
+
+PATH = "time_s,x_m,y_m,z_m\n0,250,200,-100\n60,240,180,-90\n"
+ALONG = "workspace: {path: path.csv}\nselection: {}\n"
+
+
+def test_set_points_along_the_path_of_the_study(tmp_path, designer) -> None:
+    (tmp_path / "path.csv").write_text(PATH)
+    file = study(tmp_path, STUDY + ALONG)
+    found = designer("lengths", str(file))
+    assert found.status == 0, found.err
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "crane-lengths.csv").read_text())))
+    analysis = door.analyse(door.read_study(file))
+    assert analysis.path is not None
+    (case,) = analysis.path.cases
+    assert [float(row["time_s"]) for row in rows] == case.motion.time_s.tolist()
+    lengths = np.array([[float(row[f"length_{k}_m"]) for k in (1, 2, 3)] for row in rows])
+    assert lengths == pytest.approx(case.statics.length_m)
+    # Poses of a file are taken at rest, also where the path has one.
+    at_rest = lengths_of(analysis, door.Poses.at(case.motion.positions_m))
+    assert at_rest is not None
+    tension, moving = at_rest.statics.exit_tension_N, case.tension_N
+    assert np.abs(tension / moving - 1.0).max() > 1e-4
+
+
+def test_without_poses_and_path(tmp_path, designer) -> None:
+    found = designer("lengths", str(study(tmp_path)))
+    assert found.status == 2
+    assert "--poses: is missing, and the study has no workspace.path" in found.err

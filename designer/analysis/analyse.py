@@ -21,6 +21,7 @@ from designer.analysis.governing import (
     governing_ropes,
 )
 from designer.analysis.modes import PlatformModes, modes_of
+from designer.analysis.path import PathAnalysis, path_of, path_requirements
 from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.analysis.provenance import Provenance
 from designer.analysis.reactions import Reaction, reactions_of
@@ -220,7 +221,7 @@ class Analysis:
     @cached_property
     def requirements(self) -> tuple[Requirement, ...]:
         """All that the study asks for, in every load case; the answer follows from these alone."""
-        return requirements_of(self)
+        return (*requirements_of(self), *path_requirements(self))
 
     @cached_property
     def cases(self) -> tuple[CaseResult, ...]:
@@ -301,6 +302,11 @@ class Analysis:
         return uncertainty_of(self.study, self.selection, self.built, self.reporter)
 
     @cached_property
+    def path(self) -> PathAnalysis | None:
+        """What the winches do along the path of the study; None without one, or without cables."""
+        return path_of(self)
+
+    @cached_property
     def reactions(self) -> tuple[Reaction, ...]:
         """What the cables of the design do to their supports; nothing where none holds."""
         if self.qualities is None:
@@ -373,7 +379,7 @@ _TELLS_NO_GRADES = re.compile(
 """Whether a path of ``result.json`` is told by the chosen rope alone."""
 _STAGES = (
     *("pose", "workspace", "selection", "groups", "needs", "qualities", "requirements"),
-    *("reactions", "verification", "carries", "group_slopes", "servable", "uncertainty"),
+    *("path", "reactions", "verification", "carries", "group_slopes", "servable", "uncertainty"),
     *("worst_sizing", "outside", "governing", "findings", "modes"),
 )
 """In the order in which their progress is shown."""

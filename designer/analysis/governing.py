@@ -142,7 +142,7 @@ def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | N
         strict=True,
     )
     cables = tuple(CableThere(*row) for row in rows)
-    return GoverningPose(case, statics, cables, tuple(_loads(case.loaded)))
+    return GoverningPose(case, statics, cables, tuple(_loads(case.loaded, case.pose)))
 
 
 def _up(loaded: Loaded) -> FloatArray:
@@ -156,7 +156,7 @@ def _pulls_N(statics: Statics) -> FloatArray:
     return np.asarray(-on_cable @ statics.robot.upright)
 
 
-def _loads(loaded: Loaded) -> list[tuple[str, FloatArray]]:
+def _loads(loaded: Loaded, pose: Poses) -> list[tuple[str, FloatArray]]:
     """Return what acts on the platform beside the cables, by its name."""
     body, case = loaded.robot.platform, loaded.case
     named = [("weight", -loaded.robot.weight_N * _up(loaded))]
@@ -164,6 +164,9 @@ def _loads(loaded: Loaded) -> list[tuple[str, FloatArray]]:
     if case.wind is not None and loaded.wind is not None:
         wind = case.wind.pressure_Pa * (body.drag_area_m2 or 0.0) * loaded.wind
         named.append(("wind on the platform", wind))
+    inertia = loaded.robot.inertia_wrench_N(pose)
+    if inertia is not None:
+        named.append(("inertia force", inertia[0, :3]))
     if body.centre_force_N.any():
         named.append(("inertia force", body.centre_force_N))
     constant_N = body.wrench_N[:3] - wind

@@ -70,8 +70,10 @@ class Lengths:
         return csv_text(rows)
 
 
-def lengths_of(analysis: Analysis, poses: Poses) -> Lengths | None:
+def lengths_of(analysis: Analysis, poses: Poses, *, in_motion: bool = False) -> Lengths | None:
     """Solve poses (n_poses,) with the cables of the design; None if there is no such cable.
+
+    At rest unless they are instants of the path of the study, passed ``in_motion``.
 
     The cables are the ropes of the answer, else the thinnest of the configured family that holds
     the workspace or, where there is none, the configured pose.
@@ -85,6 +87,7 @@ def lengths_of(analysis: Analysis, poses: Poses) -> Lengths | None:
     else:
         return None
     workspace, robot = analysis.study.workspace, analysis.built.robot
+    robot = robot if in_motion else robot.at_rest
     outside = np.zeros(poses.shape, dtype=bool)
     if workspace is not None and not workspace.region.is_discrete:
         outside = ~workspace.region.contains(poses.position_m)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -80,6 +80,7 @@ def analyse_pose(study: Study) -> PoseAnalysis:
         fault = study.source.fault("pose", "is missing", "a pose, such as [250, 200, -50]")
         raise InputError([fault])
     built = as_built_by(study)
+    built = replace(built, robot=built.robot.at_rest)
     section_m = section_of_pose(built, study.pose, study.material)
     robot, material = built.robot, built.material(study.material, section_m)
     return PoseAnalysis(

@@ -52,6 +52,7 @@ def result_dict(analysis: Analysis) -> Json:
                 analysis.uncertainty if is_read("uncertainty") else None
             ),
             **(_modes(analysis.modes if is_read("modes") or is_read("modes_at") else None)),
+            "path": _path(analysis),
             "reactions": analysis.reactions if is_read("reactions") else [],
             "findings": analysis.findings if is_read("findings") else None,
             "proof": (selection and selection.proof) or Proof("off"),
@@ -203,6 +204,12 @@ def _qualities(analysis: Analysis) -> Json:
 
 def _modes(modes: PlatformModes | None) -> Json:
     return {"modes": [] if modes is None else [*modes.rows()], "modes_at": modes}
+
+
+def _path(analysis: Analysis) -> Json | None:
+    if not analysis.is_read("path") or analysis.path is None:
+        return None
+    return analysis.path.to_dict()
 
 
 def _interference(survey: Interference) -> Json:

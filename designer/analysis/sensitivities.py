@@ -279,7 +279,12 @@ def payload_scaled(loaded: Loaded, factor: float) -> Loaded:
     (robot, cable), case = loaded.bare, loaded.case
     body = robot.platform
     wrench = body.wrench_N if case.wrench_N is None else case.wrench_N
-    robot = replace(robot, platform=replace(body, mass_kg=factor * case.mass_on(body)))
+    inertia = body.inertia_kg_m2 if case.inertia_kg_m2 is None else case.inertia_kg_m2
+    scaled = replace(body, mass_kg=factor * case.mass_on(body))
+    if body.motion is not None and inertia is not None:
+        case = replace(case, inertia_kg_m2=None)
+        scaled = replace(scaled, inertia_kg_m2=factor * inertia)
+    robot = replace(robot, platform=scaled)
     case = replace(case, mass_kg=None, wrench_N=factor * wrench)
     return replace(loaded, case=case, bare=(robot, cable))
 

@@ -150,7 +150,8 @@ def report(
 ) -> bool:
     """Size, sweep the workspace, choose a rope, and write the report.
 
-    Writes report.html, report.pdf, result.json, candidates.csv, reactions.csv and workspace.nc.
+    Writes report.html, report.pdf, result.json, candidates.csv, reactions.csv, workspace.nc
+    and, along a path, path.csv.
 
     Example:  designer report fast.yaml -o fast-report
 

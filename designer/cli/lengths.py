@@ -19,13 +19,14 @@ _MOST_ROWS = 12
 def lengths(
     config: Config,
     poses: Annotated[
-        Path,
+        Path | None,
         option(
             "--poses",
             metavar="CSV",
-            text="Poses: columns x_m, y_m, z_m, and rx_rad, ry_rad, rz_rad if the platform turns.",
+            text="Poses: columns x_m, y_m, z_m, and rx_rad, ry_rad, rz_rad if the platform turns; "
+            "may be left out where the study has a workspace.path.",
         ),
-    ],
+    ] = None,
     output: Annotated[Path | None, output_option("CONFIG-lengths.csv", "FILE")] = None,
     no_plugins: NoPlugins = False,
 ) -> bool:
@@ -33,6 +34,7 @@ def lengths(
 
     Writes the poses with the length of each cable, its tension at the exit point, and a verdict.
     Without rx_rad, ry_rad and rz_rad a platform is turned as the workspace has it, if in one way.
+    Without --poses these are set-points along workspace.path, with their times, in motion.
 
     Example:  designer lengths crane.yaml --poses path.csv -o winches.csv
 
@@ -40,11 +42,11 @@ def lengths(
     """
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
     from designer.io.output import write_file
-    from designer.io.poses import poses_in, read_poses
+    from designer.io.poses import along_path, poses_in, read_poses
     from designer.study import declared_settings
 
     study, plugins = study_of(config, no_plugins)
-    table = read_poses(poses, study.robot)
+    table = along_path(study) if poses is None else read_poses(poses, study.robot)
     turned = poses_in(study.workspace, table)
     catalogue = catalogue_of(study, plugins)
     announce_compiling()
@@ -53,7 +55,8 @@ def lengths(
     from designer.analysis.lengths import lengths_of
 
     with ProgressBars() as bars:
-        answer = lengths_of(Analysis.begin(study, catalogue, reporter=bars), turned)
+        analysis = Analysis.begin(study, catalogue, reporter=bars)
+        answer = lengths_of(analysis, turned, in_motion=poses is None)
     if answer is None:
         show("No rope serves this study, so there are no lengths: see designer report.")
         return False
@@ -62,7 +65,8 @@ def lengths(
     print_left_out(f"{poses}: column {name} holds texts: left out" for name in table.left_out)
     _print_lengths(answer, path)
     if study.load_cases:
-        show("These are of the platform at rest, without the load cases of the study.")
+        state = "in motion" if poses is None else "at rest"
+        show(f"These are of the platform {state}, without the load cases of the study.")
     unseen = [s.effect.key for s in declared_settings(study) if not s.effect.reaches_design]
     if unseen:
         show(

@@ -94,7 +94,7 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
             tension_noise_N=None if "tension" in estimated else measurements.tension_noise_N,
         )
     # The diagnosis asks no strength of the cable, and only laws of plugins ask its diameter.
-    machine = Machine(study.robot, measurements.cable(), surroundings=study.surroundings)
+    machine = Machine(study.robot.at_rest, measurements.cable(), surroundings=study.surroundings)
     declared = declared_settings(study, machine)
     if not measured.has_poses and np.isnan(measured.poses.position_m).any():
         assert study.workspace is not None  # the config has been checked

@@ -18,11 +18,16 @@ from designer.measured.formats import read_table
 from designer.measured.table import LogTable, RawColumn
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
+from designer.study import Study
 
 _OFF_PLANE = 1e-6
 """What counts as out of a planar robot's plane, over the extent of its exit points, or [rad]."""
 _OURS = (*POSITION, *ROTATION_VECTOR)
 _LOAD_CASE = "load_case"
+TIME = "time_s"
+_LATEST_S = 1e7
+MOST_PATH_ROWS = 5000
+"""Of a path: each takes poses of its own."""
 ErrorOf = Callable[[str, str], InputError]
 _OF_OPTION: ErrorOf = partial(InputError.at, "--poses")
 MOST_POSES = 50_000
@@ -46,6 +51,8 @@ class PoseTable:
         Columns that hold texts.
     sha256 : str
         Digest of the file's bytes.
+    log : LogTable
+        As it was read, which tells the line of a fault.
     """
 
     names: tuple[str, ...]
@@ -54,6 +61,7 @@ class PoseTable:
     load_cases: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
     sha256: str = ""
+    log: LogTable | None = None
 
     @property
     def poses(self) -> Poses:
@@ -104,7 +112,24 @@ def read_poses(path: Path, robot: Robot, error_of: ErrorOf = _OF_OPTION) -> Pose
         _load_cases(columns[_LOAD_CASE], table.n_rows) if _LOAD_CASE in columns else (),
         tuple(c.name for c in table.columns if c.n_texts and c.name != _LOAD_CASE),
         table.sha256,
+        table,
     )
+
+
+def along_path(study: Study) -> PoseTable:
+    """Return the instants of the path of a study, with their times.
+
+    Raises
+    ------
+    InputError
+        If it has none.
+    """
+    motion = study.robot.platform.motion
+    if motion is None:
+        raise _OF_OPTION("is missing, and the study has no workspace.path", "--poses CSV")
+    names = (TIME, *POSITION, *(() if study.robot.is_point_mass else ROTATION_VECTOR))
+    values = np.column_stack([motion.time_s, motion.places])[:, : len(names)]
+    return PoseTable(names, values, values[:, 1:])
 
 
 def poses_in(workspace: Workspace | None, table: PoseTable) -> Poses:
@@ -115,6 +140,44 @@ def poses_in(workspace: Workspace | None, table: PoseTable) -> Poses:
     if workspace is None or workspace.orientations.count > 1 or table.places.shape[1] == 6:
         return table.poses
     return Poses.at(workspace.space.places(table.places))
+
+
+def path_faults(table: PoseTable, *, has_limits: bool) -> Iterator[Fault]:
+    """Yield what is wrong with a table as a path: too few rows, times that do not rise.
+
+    Where it has no times, rows that repeat the one before; there it ``has_limits``, or is at fault
+    elsewhere.
+    """
+    log = table.log
+    assert log is not None
+    if table.load_cases:
+        problem = "is a column of a list of poses: all load cases follow the path"
+        yield log.fault(None, _LOAD_CASE, problem, "no such column")
+    for name in ("time", "t", "t_s"):
+        if name in table.names and TIME not in table.names:
+            yield log.fault(None, name, "is no name of a column of a path", TIME)
+    if not 2 <= len(table.places) <= MOST_PATH_ROWS:
+        problem = f"{len(table.places)} {'row' if len(table.places) == 1 else 'rows'}"
+        yield log.fault(None, "", problem, f"2 to {MOST_PATH_ROWS} rows of a path")
+        return
+    if TIME in table.left_out:
+        yield log.fault(None, TIME, "holds texts", "a number in each row")
+    elif TIME in table.names:
+        times = table.values[:, table.names.index(TIME)]
+        for row in np.flatnonzero(~(np.abs(times) <= _LATEST_S)).tolist()[:1]:
+            value = "nothing" if np.isnan(times[row]) else f"{times[row]:g}"
+            yield log.fault(row, TIME, f"holds {value}", f"a number up to {_LATEST_S:g} s")
+            return
+        for row in np.flatnonzero(np.diff(times) <= 0.0).tolist()[:1]:
+            problem = f"has the time {times[row + 1]:g} s after {times[row]:g} s"
+            yield log.fault(row + 1, TIME, problem, "times that rise from row to row")
+        if not np.ptp(table.places, axis=0).any():
+            yield log.fault(None, "", "the platform stays where it is", "two places at least")
+    elif has_limits:
+        still = ~np.diff(table.places, axis=0).any(axis=1)
+        for row in np.flatnonzero(still).tolist()[:1]:
+            problem = "is the place of the row before"
+            yield log.fault(row + 1, "x_m", problem, f"another place, or a column {TIME}")
 
 
 def _load_cases(column: RawColumn, n_rows: int) -> tuple[str, ...]:

@@ -28,13 +28,15 @@ _RESULT = "a result.json that `designer report` wrote"
 def write_results(analysis: Analysis, folder: Path) -> None:
     """Write ``result.json`` into an existing folder, and the tables that the study asks for.
 
-    Those are ``candidates.csv``, ``reactions.csv`` and ``workspace.nc``.
+    Those are ``candidates.csv``, ``path.csv``, ``reactions.csv`` and ``workspace.nc``.
     """
     write_whole(folder / "result.json", f"{analysis.to_json()}\n".encode())
     if analysis.selection is not None:
         write_whole(folder / "candidates.csv", candidates_csv(analysis.selection).encode())
     if analysis.reactions:
         write_whole(folder / "reactions.csv", reactions_csv(analysis.reactions).encode())
+    if analysis.path is not None:
+        write_whole(folder / "path.csv", analysis.path.to_csv().encode())
     samples = analysis.sweep_file
     if samples is not None and samples != folder / "workspace.nc":
         shutil.copyfile(samples, folder / "workspace.nc")

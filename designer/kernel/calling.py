@@ -99,7 +99,7 @@ class Meets(NamedTuple):
 
 
 def situation_of(
-    robot: Robot, poses: Poses, exit_points_m: FloatArray, force_N: FloatArray | None = None
+    robot: Robot, poses: Poses, exit_points_m: FloatArray, wrench_N: FloatArray | None = None
 ) -> Situation:
     """Return what the kernels are told of poses (n_poses,).
 
@@ -109,8 +109,9 @@ def situation_of(
         One leading axis, in a frame whose z axis is the vertical.
     exit_points_m : array (n_cables, 3) or (n_poses, n_cables, 3)
         Where the cables begin, in that frame [m].
-    force_N : array (n_poses, 3), optional
-        Force on the platform beside its weight, in that frame [N].
+    wrench_N : array (n_poses, 3 or 6), optional
+        Force on the platform beside its weight, and moment about its origin, in that frame
+        [N, N·m].
 
     Raises
     ------
@@ -126,12 +127,12 @@ def situation_of(
         raise ValueError(
             f"exit points {exit_points_m.shape} do not fit {count} poses of {n} cables"
         )
-    if force_N is not None and force_N.shape not in ((1, 3), (count, 3)):
-        raise ValueError(f"forces {force_N.shape} do not fit {count} poses")
+    if wrench_N is not None and wrench_N.shape not in ((1, 3), (count, 3), (count, 6)):
+        raise ValueError(f"forces {wrench_N.shape} do not fit {count} poses")
     return Situation(
         plain(exit_points_m.reshape(-1, n, 3)),
         plain(robot.attachments_m),
-        plain(robot.loads_N(force_N)),
+        plain(robot.loads_N(wrench_N)),
         plain(robot.platform.centre_of_mass_m),
         plain(robot.centre_pull_N),
         plain(poses.position_m),

@@ -289,6 +289,9 @@ class LoadCase:
             drag = self.wind.pressure_Pa * (body.drag_area_m2 or 0.0) * wind
             wrench = wrench + np.concatenate([drag, np.zeros(3)])
         body = replace(body, mass_kg=factor * mass, wrench_N=wrench, centre_force_N=centre)
+        if body.motion is not None:
+            inertia_kg_m2 = body.inertia_kg_m2 if self.inertia_kg_m2 is None else self.inertia_kg_m2
+            body = replace(body, moving_mass_kg=mass, inertia_kg_m2=inertia_kg_m2)
         loaded = replace(robot, platform=body)
         # Weight, ice and drag of a cable per unstrained length, in the world frame.
         ice = self.ice or Ice(0.0)

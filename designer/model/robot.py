@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from designer import checked
 from designer.arrays import BoolArray, FloatArray, IntArray, frozen_array
 from designer.model.cable import NOTHING_ATTACHED, STANDARD_GRAVITY_M_PER_S2, Attached
+from designer.model.motion import Motion
 from designer.model.winches import Winches
 
 
@@ -43,6 +44,10 @@ class Platform(checked.Value):
     inertia_kg_m2 : array (3, 3) or None
         Moments of inertia about the centre of mass, along the axes of the body frame; None where
         they are not known. Products are minus the integrals of x y and so on [kg·m²].
+    motion : Motion or None
+        How it moves where it takes its poses in motion; None at rest.
+    moving_mass_kg : float or None
+        What is accelerated where that is not the mass, as under a dynamic factor [kg].
     """
 
     mass_kg: checked.NotNegative
@@ -54,6 +59,8 @@ class Platform(checked.Value):
     drag_area_m2: checked.NotNegative | None = None
     mass_offset_kg: float = 0.0
     inertia_kg_m2: Annotated[FloatArray, checked.Shape((3, 3))] | None = None
+    motion: Motion | None = None
+    moving_mass_kg: checked.NotNegative | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -237,6 +244,26 @@ class Robot:
             pull = self.leaning @ pull
         return np.asarray(pull - self.upright @ self.platform.centre_force_N)
 
+    @property
+    def at_rest(self) -> Robot:
+        """The robot whose platform takes its poses at rest."""
+        if self.platform.motion is None:
+            return self
+        return replace(self, platform=replace(self.platform, motion=None))
+
+    def inertia_wrench_N(self, poses: Poses) -> FloatArray | None:
+        """Return force and moment of inertia in motion, about the origin of the body frame.
+
+        Along the axes of the base frame (..., 6); None where all poses are taken at rest [N, N·m].
+        """
+        body = self.platform
+        if body.motion is None:
+            return None
+        mass_kg = body.mass_kg if body.moving_mass_kg is None else body.moving_mass_kg
+        centre, inertia = body.centre_of_mass_m, body.inertia_kg_m2
+        at = poses.position_m, poses.rotations
+        return body.motion.inertia_wrench_N(*at, mass_kg, centre, inertia)
+
     def without_cable(self, cable: int) -> Robot:
         """Return the robot without one of its cables, counted from 1."""
         remaining = np.delete(np.arange(self.n_cables), cable - 1)
@@ -246,10 +273,15 @@ class Robot:
         exit_points_m, winches = self.exit_points_m[remaining], self.winches.without(cable)
         return replace(self, exit_points_m=exit_points_m, platform=body, winches=winches)
 
-    def loads_N(self, force_N: FloatArray | None = None) -> FloatArray:
-        """Return `pull_N` less a force (n_poses, 3), upright frame, (1 or n_poses, 6) [N, N·m]."""
+    def loads_N(self, wrench_N: FloatArray | None = None) -> FloatArray:
+        """Return `pull_N` less a force (n_poses, 3), or force and moment (n_poses, 6).
+
+        Upright frame, (1 or n_poses, 6) [N, N·m].
+        """
         pull = self.pull_N[None]
-        return pull if force_N is None else pull - np.pad(force_N, ((0, 0), (0, 3)))
+        if wrench_N is None:
+            return pull
+        return pull - np.pad(wrench_N, ((0, 0), (0, 6 - wrench_N.shape[1])))
 
 
 def vertical_frame(gravity_direction: FloatArray) -> FloatArray:

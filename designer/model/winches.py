@@ -30,6 +30,10 @@ class Winches(checked.Value):
         point: gear, drum and sheaves together.
     motor_torque_Nm : float or None
         Torque that the motor may give while it holds or slowly pulls [N·m].
+    speed_max_m_per_s : float or None
+        Fastest that a winch hauls in or pays out [m/s].
+    motor_speed_rad_per_s, motor_power_W : float or None
+        Fastest that the motor turns, and the power that it may give or take [rad/s, W].
     """
 
     tension_max_N: checked.Positive | None = None
@@ -39,6 +43,9 @@ class Winches(checked.Value):
     gear_ratio: checked.Positive = 1.0
     efficiency: checked.Efficiency = 1.0
     motor_torque_Nm: checked.Positive | None = None
+    speed_max_m_per_s: checked.Positive | None = None
+    motor_speed_rad_per_s: checked.Positive | None = None
+    motor_power_W: checked.Positive | None = None
 
     def torque_Nm(self, tension_N: FloatArray, rope_diameter_m: FloatArray | float) -> FloatArray:
         """Return the motor's torque that pulls with a tension at the exit point (...) [N·m].

@@ -28,9 +28,10 @@ REPORT_FILES = (
     "result.json",
     "candidates.csv",
     "reactions.csv",
+    "path.csv",
     "workspace.nc",
 )
-"""What `designer report` writes; the last three only where the study asks for them."""
+"""What `designer report` writes; the last four only where the study asks for them."""
 
 
 def render_html(

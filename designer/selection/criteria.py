@@ -169,12 +169,15 @@ def _of_winches(winches: Winches) -> Iterator[Criterion]:
 
 def _motor_torque_Nm(loaded: Loaded, statics: Statics) -> FloatArray:
     """Return the torque of each motor (n, n_cables) at rest, its rope in the outermost layer."""
-    cable: Cable | Cables = loaded.cable
-    if isinstance(cable, Cables):
-        rope_m: FloatArray | float = np.array([each.diameter_m for each in cable.each])
-    else:
-        rope_m = cable.diameter_m
+    rope_m = rope_diameter_m(loaded.cable)
     return statics.robot.winches.torque_Nm(statics.exit_tension_N, rope_m)
+
+
+def rope_diameter_m(cable: Cable | Cables) -> FloatArray | float:
+    """Return the diameter of all cables, or of each (n_cables,) [m]."""
+    if isinstance(cable, Cables):
+        return np.array([each.diameter_m for each in cable.each])
+    return cable.diameter_m
 
 
 def _of_workspace(workspace: Workspace) -> Iterator[Criterion]:

@@ -64,8 +64,20 @@ def upright_situation(
 
     Exit points, where the cables leave their pulleys, are in the upright frame.
     """
-    force = None if force_N is None else force_N @ robot.upright.T
-    return situation_of(robot, upright_poses(robot, poses), exit_points_m, force)
+    wrench = None if force_N is None else force_N @ robot.upright.T
+    inertia = _inertia_wrench_N(robot, poses)
+    if inertia is not None:
+        wrench = inertia if wrench is None else inertia + np.pad(wrench, ((0, 0), (0, 3)))
+    return situation_of(robot, upright_poses(robot, poses), exit_points_m, wrench)
+
+
+def _inertia_wrench_N(robot: Robot, poses: Poses) -> FloatArray | None:
+    """Return `Robot.inertia_wrench_N` in the upright frame (..., 6) [N, N·m]."""
+    wrench = robot.inertia_wrench_N(poses)
+    if wrench is None or robot.is_upright:
+        return wrench
+    turned = wrench.reshape(*poses.shape, 2, 3) @ robot.upright.T
+    return np.asarray(turned.reshape(wrench.shape))
 
 
 def one_cable(robot: Robot, cable: Cable | Cables, least_tension_N: float = 0.0) -> CableFigures:
@@ -156,7 +168,10 @@ def load_wrench_N(robot: Robot, poses: Poses, force_N: FloatArray | None = None)
         force = force + force_N @ robot.upright.T
     moment = moment + np.cross(centre_of_mass_arm_m(robot, poses), -robot.centre_pull_N)
     parts = [np.broadcast_to(force, shape), np.broadcast_to(moment, shape)]
-    return np.asarray(np.concatenate(parts, axis=-1)[..., robot.balance_rows])
+    wrench = np.concatenate(parts, axis=-1)
+    inertia = _inertia_wrench_N(robot, poses)
+    wrench = wrench if inertia is None else wrench + inertia
+    return np.asarray(wrench[..., robot.balance_rows])
 
 
 def plane_vector(x: FloatArray, z: FloatArray, outward: FloatArray) -> FloatArray:

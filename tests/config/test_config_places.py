@@ -183,7 +183,11 @@ def test_lengths_are_asked_for_as_the_workspace_turns_the_platform(
 WRONG = [
     ("poses: list.csv", "", r"body.yaml:9: workspace.poses: .*list.csv: "),
     ("poses: list.csv\n  region: {box: [[0, 1], [0, 1], [0, 1]]}", POSES, "has region and poses"),
-    ("samples: 100", "", r"workspace: there is nothing to serve \(expected region or poses\)"),
+    (
+        "samples: 100",
+        "",
+        r"workspace: there is nothing to serve \(expected region, poses or path\)",
+    ),
     ("poses: list.csv", POSES + "0,0,2,0,0,0,lift", "poses for 'lift', which is no load case"),
     ("poses: list.csv\n  orientation: [0, 0, 1 deg]", POSES + "0,0,2,0,0,0,", "of its own"),
     ("poses: list.csv", POSES + "0,0,high,0,0,0,", r"list.csv:2: z_m: row 1 holds 'high'"),

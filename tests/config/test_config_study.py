@@ -157,6 +157,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("robot.planar", "default", "false"),
         Entry("robot.tension_min", "default", "0 N"),
         Entry("robot.winches.tension_max", "default", "none"),
+        Entry("robot.winches.speed_max", "default", "none"),
         Entry("robot.winches.positions", "default", "none"),
         Entry("robot.winches.drum_diameter", "default", "none"),
         Entry("robot.winches.layers", "default", "1"),
@@ -177,6 +178,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("workspace.region.inset", "3 m", "3 m"),
         Entry("workspace.region.z", "[1, 8]", "[1, 8] m"),
         Entry("workspace.poses", "default", "none"),
+        Entry("workspace.path", "default", "none"),
         Entry("workspace.samples", "500", "500"),
         Entry("workspace.sampling", "default", "low_discrepancy"),
         Entry("workspace.seed", "default", "0"),
@@ -270,8 +272,8 @@ def _with_options(text: str) -> str:
 
 def test_the_options_in_the_starter_config_are_true(study_of: StudyOf) -> None:
     text = _with_options(example_file("fast").read_text(encoding="utf-8"))
-    choices = re.compile(r"(?m)^ *(planar|poses|orientation\w*):.*\n")
-    assert len(choices.findall(text)) == 8
+    choices = re.compile(r"(?m)^ *(planar|poses|path|orientation\w*):.*\n")
+    assert len(choices.findall(text)) == 9
     text = choices.sub("", text)
     with pytest.raises(InputError, match="uncertainty or groups, not both"):
         study_of(text)

@@ -46,6 +46,7 @@ def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]
         catalogues_exist,
         each_cable_in_one_group,
         fields_go_together,
+        path_stands_alone,
         load_cases_fit,
         inertia_is_known,
         effects_are_known,
@@ -163,7 +164,13 @@ _NO_ROPE = "a selection: it is the chosen rope that may not be enough"
 _NO_WINCHES = "a workspace: winches are held against what they meet in all its poses"
 _NO_MOTOR = "robot.winches.motor: {torque: …}, or leave it out"
 _NO_DRUM = "robot.winches.drum_diameter, which tells the torque of a tension"
+_PATH = "workspace.path"
+_NO_PATH = "workspace.path, along which speed and power are evaluated"
 _NEEDS = (
+    *(
+        (f"robot.winches.{name}", _PATH, "there is no path, so that nothing moves", _NO_PATH)
+        for name in ("speed_max", "motor.speed", "motor.power")
+    ),
     ("selection", "workspace", "has no meaning without a workspace", _NO_WORKSPACE),
     ("selection.max_distinct_products", _GROUPS, _NO_LIMIT, "groups, or neither"),
     (_CASES, "workspace", "there is no workspace", _NO_CASES),
@@ -201,6 +208,36 @@ def fields_go_together(parts: Parts) -> Iterator[Fault]:
     for path, problem, expected in _EXCLUDES:
         if path in given and parts.raw(_GROUPS) is not None:
             yield parts.fault(_GROUPS, problem, expected)
+
+
+def path_stands_alone(parts: Parts) -> Iterator[Fault]:
+    """A path is beside nothing that is not computed in motion."""
+    path = parts.raw(_PATH)
+    if path is None:
+        return
+    expected = "workspace.path, or this beside workspace.poses"
+    for field, problem in _NOT_IN_MOTION:
+        if parts.raw(field) not in (None, []):
+            yield parts.fault(field, f"{problem} along a path", expected)
+    if parts.raw("workspace.proof") is not None:
+        problem = "the instants of a path are tried one by one, and nothing is proved between them"
+        yield parts.fault("workspace.proof", problem, "no such field beside workspace.path")
+    for index, case in _load_cases(parts):
+        for name, problem in _CASES_NOT_IN_MOTION.items():
+            if case.get(name) is not None:
+                yield parts.fault(_CASES, problem, "a load case without it", index, name)
+
+
+_NOT_IN_MOTION = (
+    (_GROUPS, "groups of cables are not chosen"),
+    (_UNCERTAINTY, "uncertainty is not computed"),
+)
+_CASES_NOT_IN_MOTION = {
+    "acceleration": "the path gives the platform's accelerations itself",
+    "cable_lost": "where a moving platform goes without a cable is not computed",
+    "temperature_change": "where a moving platform goes on braked winches is not computed",
+    "region": "the platform follows workspace.path in every load case",
+}
 
 
 def regions_fit_the_plane(parts: Parts) -> Iterator[Fault]:

@@ -17,9 +17,9 @@ from designer.effects.effect import Effect
 from designer.io.config.columns import ColumnSection
 from designer.io.config.effects import field_of
 from designer.io.config.regions import OrientationSection
-from designer.io.config.schema import PoseSection, StudySection
+from designer.io.config.schema import PathSection, PoseSection, StudySection
 
-_SHORTHANDS = (PoseSection, OrientationSection, ColumnSection)
+_SHORTHANDS = (PoseSection, OrientationSection, ColumnSection, PathSection)
 """Sections that the file may also give as the value of their first field alone."""
 
 

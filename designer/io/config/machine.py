@@ -91,6 +91,10 @@ class MotorSection(Section):
 
     torque: fields.Torque = config_field("Torque of a motor", expected="a torque such as '40 N*m'")
     """Torque that the motor may give while it holds a load or slowly pulls it."""
+    speed: fields.RotationalSpeed | None = config_field("Speed of a motor")
+    """Fastest that the motor turns, along workspace.path."""
+    power: fields.Power | None = config_field("Power of a motor")
+    """Power that the motor may give or take, along workspace.path."""
 
 
 class WinchesSection(Section):
@@ -98,6 +102,8 @@ class WinchesSection(Section):
 
     tension_max: fields.BreakingLoad | None = config_field("Largest tension of a winch")
     """Largest tension of a cable at its exit point, in every load case."""
+    speed_max: fields.RopeSpeed | None = config_field("Largest speed of a winch")
+    """Fastest that a winch hauls in or pays out, along workspace.path."""
 
     positions: WinchPositions | None = config_field("Winch")
     """Where the cable comes from to its exit point: its winch, or the last sheave before that;
@@ -124,6 +130,9 @@ class WinchesSection(Section):
             self.gear_ratio,
             self.efficiency,
             None if self.motor is None else self.motor.torque,
+            self.speed_max,
+            None if self.motor is None else self.motor.speed,
+            None if self.motor is None else self.motor.power,
         )
 
 

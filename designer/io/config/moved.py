@@ -43,7 +43,7 @@ def moved_to(folder: Path, text: str, document: Document, start: Path) -> str:
     """Return the text of a document, which lies in ``start``, as it is to lie in a folder."""
     if folder.resolve() == start.resolve():
         return text
-    places: list[tuple[Key, ...]] = [("measurements", "file"), ("document", "logo")]
+    places: list[tuple[Key, ...]] = [("measurements", "file"), ("document", "logo"), *_TABLES]
     for listed in (("catalogues",), ("measurements", "file")):
         files = document.root.at(listed)
         count = len(files.content) if files is not None and isinstance(files.content, tuple) else 0
@@ -55,6 +55,12 @@ def moved_to(folder: Path, text: str, document: Document, start: Path) -> str:
             to = path_from(folder, start / name)
             text = edits.with_value(text, keys, edits.scalar(to))
     return with_schema_moved(text, start, partial(path_from, folder))
+
+
+_TABLES = tuple(
+    ("workspace", *keys)
+    for keys in (("poses",), ("path",), ("path", "file"), ("orientation", "table"))
+)
 
 
 def path_from(folder: Path, path: Path) -> str:

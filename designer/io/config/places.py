@@ -12,9 +12,15 @@ import numpy as np
 from designer.arrays import FloatArray, frozen_array
 from designer.documents.document import Document, Keys
 from designer.errors import InputError
-from designer.io.config.schema import ORIENTATION_KINDS, StudySection, WorkspaceSection
-from designer.io.poses import PoseTable, read_poses
+from designer.io.config.schema import (
+    ORIENTATION_KINDS,
+    PathSection,
+    StudySection,
+    WorkspaceSection,
+)
+from designer.io.poses import TIME, PoseTable, path_faults, read_poses
 from designer.model.cable import Material
+from designer.model.motion import Motion, limited, timed
 from designer.model.point_list import PointList
 from designer.model.region import Region
 from designer.model.robot import Robot
@@ -30,12 +36,14 @@ Listed = tuple[Region, Orientations]
 class Places:
     """The workspace of a study, and what of a list of poses is for one load case alone.
 
-    ``tables`` are the names and digests of the files that it was read with.
+    ``tables`` are the names and digests of the files that it was read with, ``motion`` is how the
+    platform moves from pose to pose.
     """
 
     workspace: Workspace | None
     of_cases: Mapping[str, Listed] = field(default_factory=dict)
     tables: tuple[tuple[str, str], ...] = ()
+    motion: Motion | None = None
 
     @property
     def are_turned_one_by_one(self) -> bool:
@@ -58,7 +66,9 @@ def places_of(
     if workspace is None:
         return Places(None)
     build = _Places(document, robot, material)
-    if workspace.region is None:
+    if workspace.path is not None:
+        places = build.along_path(section, workspace.path)
+    elif workspace.region is None:
         places = build.listed(workspace, [case.name for case in section.load_cases])
     else:
         region = workspace.region.over(robot.exit_points_m)
@@ -133,6 +143,74 @@ class _Places:
             of_cases[name] = self._poses(section, table.places[is_own])
         return Places(section.workspace(*every), of_cases)
 
+    def along_path(self, section: StudySection, path: PathSection) -> Places:
+        """Return the instants of a path, and how the platform moves through them."""
+        workspace = section.workspace
+        assert workspace is not None
+        table = self._table((*_PATH, "file"), path.file)
+        places = self._turned(workspace, table, path.file)
+        faults = list(path_faults(table, has_limits=path.speed_max is not None))
+        if faults:
+            raise InputError(faults)
+        motion = self._motion(path, table, places)
+        if motion.turns:
+            self._require_inertia(section, path.file)
+        region, orientations = self._poses(workspace, motion.places)
+        return Places(workspace.workspace(region, orientations), motion=motion)
+
+    def _motion(self, path: PathSection, table: PoseTable, places: FloatArray) -> Motion:
+        """Return the motion through the places (n_rows, 6) of a table, by times or by limits."""
+        name, up = path.file, self.robot.level[2]
+        limits = {name: getattr(path, name) for name in ("speed_max", "acceleration_max")}
+        if TIME in table.names:
+            for limit in (limit for limit, value in limits.items() if value is not None):
+                problem = f"{name} has times of its own, in its column {TIME}"
+                raise self._error((*_PATH, limit), problem, "one of the two")
+            time_s = table.values[:, table.names.index(TIME)]
+            return timed(time_s, places, up, path.ends or "at_rest", name)
+        for limit in (limit for limit, value in limits.items() if value is None):
+            problem = f"{limit} is missing, and {name} has no column {TIME}"
+            raise self._error(_PATH, problem, f"{limit}: …, or times in the file")
+        if path.ends is not None:
+            problem = f"{name} has no column {TIME}: it is passed from rest to rest"
+            raise self._error((*_PATH, "ends"), problem, "times in the file, or no ends")
+        reach_m = float(np.linalg.norm(self.robot.attachments_m, axis=1).max())
+        return limited(places, up, reach_m, name, *limits.values())
+
+    def _require_inertia(self, section: StudySection, name: str) -> None:
+        """Refuse a path that turns a platform whose inertia is not known in every load case."""
+        problem, expected = f"{name} turns the platform", "moments of inertia [xx, yy, zz]"
+        if self.robot.platform.inertia_kg_m2 is None:
+            where = ("robot", "platform")
+            raise self._error(where, f"inertia is missing, and {problem}", f"inertia: {expected}")
+        for index, case in enumerate(section.load_cases):
+            if case.mass is not None and case.inertia is None:
+                keys = ("load_cases", index, "mass")
+                problem = f"has no inertia beside it, and {problem}"
+                raise self._error(keys, problem, f"inertia: {expected}")
+
+    def _turned(self, section: WorkspaceSection, table: PoseTable, name: str) -> FloatArray:
+        """Return the places of a path (n_rows, 6), turned as it says or in one way all along."""
+        has_turns = table.places.shape[1] == 6
+        single = section.orientation
+        is_fixed = single is None or (single.toward is None and single.table is None)
+        for kind in ORIENTATION_KINDS:
+            if getattr(section, kind) is None or (
+                kind == "orientation" and is_fixed and not has_turns
+            ):
+                continue
+            problem = (
+                f"{name} has orientations of its own"
+                if has_turns
+                else f"the platform moves along {name}"
+            )
+            expected = "one of the two" if has_turns else "rx_rad, ry_rad and rz_rad in the file"
+            raise self._error(("workspace", kind), problem, expected)
+        if has_turns:
+            return table.places
+        turn = section.fixed_orientations().turns_rad[:1]
+        return np.hstack([table.places, np.repeat(turn, len(table.places), axis=0)])
+
     def _poses(self, section: WorkspaceSection, places: FloatArray) -> Listed:
         positions, turns = places[:, :3], places[:, 3:]
         region = PointList(frozen_array(np.unique(positions, axis=0)))
@@ -142,5 +220,6 @@ class _Places:
         return region, Orientations(law=None if is_level else EachPose.of(positions, turns))
 
 
+_PATH = ("workspace", "path")
 MOST_ROWS = 1000
 """Of a table of orientations: each costs time at every pose."""

@@ -78,6 +78,8 @@ def study_of(
     entries += _effect_entries(declared, document.root, known, robot.n_cables)
     pose, selection = section.pose, section.selection
     places = places_of(section, document, robot, material)
+    if places.motion is not None:
+        robot = replace(robot, platform=replace(robot.platform, motion=places.motion))
     measurements, uncertainty = section.measurements, section.uncertainty
     lines = {path_text(keys): node.line for keys, node in document.root.walk()}
     given = _with_family(tuple(entries), material, family)
@@ -213,11 +215,11 @@ def as_given(node: Node | None) -> str:
 def field_node(node: Node | None, name: str, section: BaseModel) -> Node | None:
     """Return the node of a section's field, None where the file gives none.
 
-    A list in place of a section gives the section's first field.
+    A list or a text in place of a section gives the section's first field.
     """
     if node is None:
         return None
-    is_shorthand = isinstance(node.content, tuple)
+    is_shorthand = isinstance(node.content, tuple | str)
     is_first = name == next(iter(type(section).model_fields))
     part_node = node if is_shorthand and is_first else node.child(name)
     is_empty = part_node is None or (

@@ -30,6 +30,7 @@ from designer.io.config.machine import ConfiguredCable, LoadCaseSection, RobotSe
 from designer.io.config.uncertainty import UncertaintySection
 from designer.model.duty import RUNNING_ROPE, DutyClass
 from designer.model.measurements import LogColumn, Measurements, Reading
+from designer.model.motion import Ends
 from designer.model.region import Region, Sampling
 from designer.model.robot import Poses
 from designer.model.space import Orientations
@@ -68,7 +69,7 @@ Groups = Annotated[
 
 
 ORIENTATION_KINDS = ("orientation", "orientations", "orientation_range", "orientation_free")
-_PLACES = ("region", "poses")
+_PLACES = ("region", "poses", "path")
 TurnList = Annotated[
     tuple[regions.OrientationSection, ...],
     fields.list_of(1, 100, "1 to 100 orientations such as [0, 0, 10 deg]"),
@@ -108,6 +109,26 @@ class PoseSection(Section):
         return Poses.at(self.position, self.turn_rad)
 
 
+class PathSection(Section):
+    """A path of the platform, and how fast it is passed."""
+
+    file: fields.Text = config_field("Path", expected="the name of a CSV file")
+    """A table, relative to this file: x_m, y_m, z_m, for a platform that turns rx_rad, ry_rad,
+    rz_rad, and time_s, or no times but the two limits below."""
+    speed_max: fields.RopeSpeed | None = config_field("Speed along the path")
+    """Of the platform's origin and of every attachment, where the file has no times."""
+    acceleration_max: fields.PathAcceleration | None = config_field("Acceleration along the path")
+    """The same of accelerations; half of it at least is left for starting and braking."""
+    ends: Ends | None = config_field("Ends of the path")
+    """Of a path with times: at_rest (unless given), the platform starts and stops in its first and
+    last row; moving, where the path is cut out of a longer motion."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_name(cls, given: object) -> object:
+        return {"file": given} if isinstance(given, str) else given
+
+
 class WorkspaceSection(Section):
     """Which poses the cable must serve."""
 
@@ -116,6 +137,9 @@ class WorkspaceSection(Section):
     poses: fields.Text | None = config_field("Poses to serve")
     """Instead of a region a table of poses, relative to this file: x_m, y_m, z_m, for a platform
     that turns rx_rad, ry_rad, rz_rad, and load_case where a pose is for one of them."""
+    path: PathSection | None = config_field("Path to follow")
+    """Instead of a region a path that the platform follows, with its inertia: a table, or {file: …,
+    speed_max: …, acceleration_max: …} where that has no times."""
     samples: Annotated[int, fields.WholeNumber(1, MOST_SAMPLES)] = 20_000
     """Number of positions of the region that are tried."""
     sampling: Sampling = config_field("Kind of samples", "low_discrepancy")
@@ -149,7 +173,7 @@ class WorkspaceSection(Section):
     @classmethod
     def _is_of_one_kind(cls, value: object) -> object:
         if isinstance(value, dict) and not any(value.get(name) for name in _PLACES):
-            raise fields.refusal("there is nothing to serve", "region or poses")
+            raise fields.refusal("there is nothing to serve", "region, poses or path")
         value = regions.only_one_of(value, _PLACES, "the workspace")
         return regions.only_one_of(value, ORIENTATION_KINDS, "the workspace")
 
@@ -165,7 +189,7 @@ class WorkspaceSection(Section):
             floor_m=self.floor,
             sag_max=self.sag,
             family_sag_max=self.sag if "sag" in self.model_fields_set else None,
-            proof_s=self.proof,
+            proof_s=0.0 if self.path is not None else self.proof,
             orientations=orientations,
         )
 

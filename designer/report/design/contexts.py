@@ -257,6 +257,25 @@ def _cables(analysis: Analysis) -> Iterator[FabricatedCable]:
         yield FabricatedCable(number, rope.grade, rope.size, longest_m, shortest_m)
 
 
+def path(analysis: Analysis) -> Context | None:
+    """What the winches do along the path; None without one, or where an instant is not held."""
+    path, qualities = analysis.path, analysis.qualities
+    if path is None or qualities is None or not all(case.is_held for case in path.cases):
+        return None
+    summary = path.to_dict()
+    energies = [[energy.sum() for energy in case.energy_J] for case in path.cases]
+    return {
+        "path": path,
+        "summary": summary,
+        "shown": path.shown,
+        "rows": summary["winches"],
+        "totals": [(case.name, *both) for case, both in zip(path.cases, energies, strict=True)],
+        "inertia_share": max(case.cable_share for case in path.cases),
+        "winches": analysis.built.robot.winches,
+        "cable": qualities.cable.name,
+    }
+
+
 def reactions(analysis: Analysis) -> Context | None:
     """What each support bears in each load case; None where no cable holds."""
     if not analysis.reactions or analysis.qualities is None:
@@ -363,6 +382,8 @@ def provenance(analysis: Analysis) -> Context:
     files = ["every candidate in candidates.csv"] if analysis.selection is not None else []
     if analysis.reactions:
         files.append("the extremes of every reaction in reactions.csv")
+    if analysis.path is not None:
+        files.append("every instant of the path in path.csv")
     if analysis.sweep_file is not None:
         files.append(f"every sample in {analysis.sweep_file.name}")
     left = _left_at_default(analysis)

@@ -14,6 +14,7 @@ from designer.report.design.carries import STEP_M, shares_of_inputs, slopes_of_m
 from designer.report.design.pose import weight_effect
 from designer.report.document import Drawing, in_space, vector
 from designer.report.figures.charts_edge import edge_chart
+from designer.report.figures.charts_path import path_chart
 from designer.report.figures.charts_pose import loop_chart
 from designer.report.figures.charts_selection import candidates_chart, pareto_chart
 from designer.report.figures.charts_sensitivity import carries_chart, odds_chart, shares_chart
@@ -132,6 +133,12 @@ class Drawings:
             return None
         assert workspace is not None
         return groups_plan(self.analysis.built.robot, workspace.region, self.analysis.assignment)
+
+    @chart
+    def path(self) -> str | None:
+        """What each cable does along the path."""
+        path = self.analysis.path
+        return None if path is None or not path.shown.is_held else path_chart(path.shown)
 
     @scene
     def governing(self) -> Image | None:

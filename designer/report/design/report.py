@@ -25,6 +25,7 @@ SECTIONS: tuple[tuple[str, Callable[[Analysis], Context | None]], ...] = (
     ("modes", contexts.modes),
     ("clearance", contexts.clearance),
     ("workshop", contexts.fabrication),
+    ("path", contexts.path),
     ("reactions", contexts.reactions),
     ("proof", contexts.proof),
     ("pose", pose.pose),

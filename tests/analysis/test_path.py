@@ -1,0 +1,246 @@
+"""A platform in motion: against Newton's law for its particles, and energies of its own account."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from pairs.options import BASES
+from pairs.table import analysed
+from scipy.interpolate import CubicSpline
+from scipy.spatial.transform import Rotation
+
+from designer.analysis.analyse import Analysis
+from designer.analysis.path import PathCase
+from designer.model.motion import Motion, limited, timed, unwrapped
+from designer.model.requirement import State
+from designer.statics.reactions import platform_branch_N
+
+UP = np.array([0.0, 0.0, 1.0])
+G = 9.81
+"""As the product has it [m/s²]."""
+
+
+def random_rows(rng: np.random.Generator, count: int, turn_rad: float = 1.0) -> np.ndarray:
+    return np.hstack([rng.normal(size=(count, 3)), turn_rad * rng.normal(size=(count, 3))])
+
+
+def particles_m(motion: Motion, arms_m: np.ndarray) -> np.ndarray:
+    """Return where points of the platform are (n_instants, n_points, 3)."""
+    turned = Rotation.from_rotvec(np.array(motion.rotation_vectors_rad)).as_matrix()
+    return motion.positions_m[:, None] + np.einsum("nij,pj->npi", turned, arms_m)
+
+
+def derived(time_s: np.ndarray, values: np.ndarray, order: int) -> np.ndarray:
+    return CubicSpline(time_s, values)(time_s, order)
+
+
+@pytest.mark.parametrize("seed", [3, 2611, 90210])
+def test_rates_are_those_of_points_of_the_platform(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    time_s = np.cumsum(rng.uniform(0.5, 2.0, size=6))
+    motion = timed(time_s, random_rows(rng, 6), UP, "at_rest", "rows")
+    arms, turn = rng.normal(size=(4, 3)), motion.rotation_vectors_rad
+    at = particles_m(motion, arms)
+    lever = at - motion.positions_m[:, None]
+    (v, w), (a, alpha) = (np.split(x, 2, axis=1) for x in (motion.velocity, motion.acceleration))
+    speed = v[:, None] + np.cross(w[:, None], lever)
+    gain = a[:, None] + np.cross(alpha[:, None], lever)
+    gain = gain + np.cross(w[:, None], np.cross(w[:, None], lever))
+    inner = slice(3, -3)
+    size = np.abs(gain).max()
+    assert derived(motion.time_s, at, 1)[inner] == pytest.approx(speed[inner], abs=1e-4 * size)
+    assert derived(motion.time_s, at, 2)[inner] == pytest.approx(gain[inner], abs=0.02 * size)
+    assert motion.velocity[[0, -1]] == pytest.approx(0.0, abs=1e-12)
+    rows = np.searchsorted(motion.time_s, time_s)
+    assert motion.time_s[rows] == pytest.approx(time_s)
+    assert len(turn) == len(motion.time_s)
+
+
+def test_rows_are_passed_at_their_times_and_turns() -> None:
+    rng = np.random.default_rng(5)
+    places, time_s = random_rows(rng, 7, 2.0), np.arange(7.0)
+    motion = timed(time_s, places, UP, "moving", "rows")
+    at = motion.places[np.searchsorted(motion.time_s, time_s)]
+    assert at[:, :3] == pytest.approx(places[:, :3])
+    gap = Rotation.from_rotvec(at[:, 3:]).inv() * Rotation.from_rotvec(places[:, 3:])
+    assert gap.magnitude() == pytest.approx(0.0, abs=1e-9)
+
+
+def test_turns_go_on_beyond_half_a_turn() -> None:
+    angles = np.arange(0.0, 9.0, 0.7)
+    whole = Rotation.from_rotvec(np.outer(angles, [0.0, 0.6, 0.8])).as_rotvec()
+    assert unwrapped(whole) == pytest.approx(np.outer(angles, [0.0, 0.6, 0.8]))
+
+
+@pytest.mark.parametrize("seed", [8, 51, 777])
+def test_inertia_is_newtons_law_of_particles(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    masses, arms = rng.uniform(1.0, 3.0, size=9), rng.normal(size=(9, 3))
+    mass = masses.sum()
+    centre = masses @ arms / mass
+    apart = arms - centre
+    inertia = sum(m * (r @ r * np.eye(3) - np.outer(r, r)) for m, r in zip(masses, apart))  # noqa: B905
+    motion = timed(np.arange(5.0), random_rows(rng, 5), UP, "at_rest", "rows")
+    turned = Rotation.from_rotvec(np.array(motion.rotation_vectors_rad)).as_matrix()
+    wrench = motion.inertia_wrench_N(motion.positions_m, turned, mass, centre, inertia)
+    at = particles_m(motion, arms)
+    each = -masses[:, None] * derived(motion.time_s, at, 2)
+    lever = at - motion.positions_m[:, None]
+    newton = np.hstack([each.sum(axis=1), np.cross(lever, each).sum(axis=1)])
+    # Differences of a cubic are as good as the interval, but at its knots.
+    error = np.abs(newton - wrench)[4:-4]
+    assert np.median(error) < 1e-4 * np.abs(wrench).max()
+
+
+@pytest.mark.parametrize("seed", [1, 19, 404])
+def test_limits_hold_on_all_of_the_platform(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    reach, speed, gain = 0.7, rng.uniform(0.2, 3.0), rng.uniform(0.1, 2.0)
+    motion = limited(random_rows(rng, 6, 0.5), UP, reach, "rows", speed, gain)
+    arms = rng.normal(size=(30, 3))
+    arms = reach * arms / np.linalg.norm(arms, axis=1, keepdims=True)
+    at = particles_m(motion, arms)
+    speeds, gains = (np.linalg.norm(derived(motion.time_s, at, k), axis=2)[3:-3] for k in (1, 2))
+    assert speeds.max() <= speed * (1.0 + 1e-3)
+    assert gains.max() <= gain * 1.01
+    assert max(speeds.max() / speed, gains.max() / gain) > 0.3  # and is not far from them
+    assert motion.velocity[[0, -1]] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(("length", "fastest"), [(20.0, 2.0), (1.0, None)])
+def test_straight_line_from_rest_to_rest(length: float, fastest: float | None) -> None:
+    rows = np.zeros((2, 6))
+    rows[1, 1] = length
+    motion = limited(rows, UP, 0.0, "rows", 2.0, 0.5)
+    speed = motion.velocity[:, 1].max()
+    assert motion.acceleration[:, 1].max() == pytest.approx(0.5, rel=1e-3)
+    ramp = np.pi * speed / (2.0 * 0.5)
+    assert motion.time_s[-1] == pytest.approx(length / speed + ramp)
+    assert motion.positions_m[-1, 1] == pytest.approx(length)
+    if fastest is None:
+        assert speed < 2.0
+        assert motion.time_s[-1] == pytest.approx(2.0 * ramp)
+    else:
+        assert speed == pytest.approx(fastest)
+    assert derived(motion.time_s, motion.positions_m[:, 1], 1) == pytest.approx(
+        motion.velocity[:, 1], abs=1e-3
+    )
+
+
+def test_each_instant_has_its_own_inertia_where_a_place_comes_twice() -> None:
+    rows = np.zeros((5, 6))
+    rows[[1, 3], 0] = 1.0  # there and back twice, with a stay at the end
+    motion = timed(np.arange(5.0), rows, UP, "at_rest", "rows")
+    assert len(np.unique(motion.positions_m, axis=0)) == len(motion.time_s)
+    assert motion.rates_at(motion.positions_m)[:, 3:] == pytest.approx(motion.acceleration)
+    assert not motion.rates_at(motion.positions_m + 1e-3).any()
+
+
+def study_on(base: str, folder: Path, rows: np.ndarray, time_s: Any, **more: Any) -> dict[str, Any]:
+    """Return a study of the pairs along a path through rows, which it writes."""
+    names = ["time_s", "x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"][: 1 + rows.shape[1]]
+    table = np.column_stack([time_s, rows])
+    np.savetxt(folder / "path.csv", table, "%.15g", ",", header=",".join(names), comments="")
+    text = BASES[base] | more
+    return text | {"workspace": {"path": "path.csv"} | more.get("workspace", {})}
+
+
+def shared_case(analysis: Analysis) -> PathCase:
+    assert analysis.path is not None
+    (case,) = analysis.path.cases
+    assert case.is_held
+    return case
+
+
+@pytest.mark.parametrize("seed", [12, 345])
+def test_forces_at_the_supports_carry_weight_and_inertia(tmp_path: Path, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rows = np.array([6.0, 4.0, 4.0]) + rng.uniform(-1.0, 1.0, size=(5, 3))
+    analysis = analysed(study_on("crane", tmp_path, rows, 2.0 * np.arange(5)), tmp_path)
+    case = shared_case(analysis)
+    time_s = case.motion.time_s
+    spline = CubicSpline(2.0 * np.arange(5), rows, bc_type="clamped")
+    rope = case.loaded.cable.linear_density_kg_per_m * case.statics.length_m.sum(axis=1)
+    on_supports = platform_branch_N(case.statics).sum(axis=1)
+    newton = -240.0 * (spline(time_s, 2) + G * UP) - np.outer(rope, G * UP)
+    assert on_supports == pytest.approx(newton, rel=1e-6, abs=1e-4)
+    # The governing pose is the worst instant, with its inertia.
+    allowable = case.loaded.cable.allowable_tension_N
+    worst = case.statics.cable_tension_N.max()
+    assert analysis.chosen is not None
+    assert analysis.chosen.verification.utilisation == pytest.approx(worst / allowable)
+
+
+def energy_J(case: PathCase, mass_kg: float) -> np.ndarray:
+    """Return kinetic and potential energy of a point mass, with own differences [J]."""
+    speed = derived(case.motion.time_s, case.motion.positions_m, 1)
+    return mass_kg * (0.5 * (speed**2).sum(axis=1) + G * case.motion.positions_m[:, 2])
+
+
+@pytest.mark.parametrize("seed", [77, 78])
+def test_work_of_the_winches_is_the_energy_of_the_platform(tmp_path: Path, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rows = np.array([6.0, 4.0, 4.0]) + rng.uniform(-1.0, 1.0, size=(4, 3))
+    case = shared_case(analysed(study_on("crane", tmp_path, rows, 1.5 * np.arange(4)), tmp_path))
+    drawn, back = case.energy_J
+    energy = energy_J(case, 240.0)
+    net, size = float((drawn - back).sum()), float(np.ptp(energy))
+    assert net == pytest.approx(energy[-1] - energy[0], abs=0.02 * size)  # rope weighs little
+    # The same against straight lines from exit to platform, whose lengths are ours alone.
+    exits = np.array(BASES["crane"]["robot"]["anchors"])
+    chord = np.linalg.norm(case.motion.positions_m[:, None] - exits, axis=2)
+    power = -case.tension_N * derived(case.motion.time_s, chord, 1)
+    assert case.power_W == pytest.approx(power, abs=0.02 * np.abs(power).max())
+
+
+def test_nothing_is_gained_on_a_way_that_comes_back(tmp_path: Path) -> None:
+    rng = np.random.default_rng(4)
+    rows = np.array([0.0, 0.3, 1.5]) + rng.uniform(-0.5, 0.5, size=(5, 3))
+    rows[-1] = rows[0]
+    turns = 0.1 * rng.uniform(-1.0, 1.0, size=(5, 3))
+    turns[-1] = turns[0]
+    base = BASES["six"]["robot"]
+    body = {"platform": base["platform"] | {"inertia": [60.0, 70.0, 90.0, 5.0, -4.0, 3.0]}}
+    study = study_on(
+        "six", tmp_path, np.hstack([rows, turns]), 3.0 * np.arange(5), robot=base | body
+    )
+    drawn, back = shared_case(analysed(study, tmp_path)).energy_J
+    assert (drawn - back).sum() == pytest.approx(0.0, abs=2e-4 * drawn.sum())
+
+
+def test_winches_and_motors_against_what_they_do(tmp_path: Path) -> None:
+    winches = {
+        **{"speed_max": 0.5, "drum_diameter": 0.3, "layers": 2, "gear_ratio": 20.0},
+        **{"efficiency": 0.8, "motor": {"torque": 50.0, "speed": 1e3, "power": 2e3}},
+    }
+    robot = BASES["crane"]["robot"] | {"winches": winches}
+    rows = np.array([[5.0, 3.0, 4.0], [7.0, 4.0, 5.0], [6.0, 5.0, 3.0]])
+    analysis = analysed(study_on("crane", tmp_path, rows, [0, 4, 8], robot=robot), tmp_path)
+    case, asked = shared_case(analysis), {each.id: each for each in analysis.requirements}
+    speed = derived(case.motion.time_s, case.statics.length_m, 1)
+    assert case.speed_m_per_s == pytest.approx(speed, abs=1e-3)
+    assert asked["winch_speed"].demand == pytest.approx(np.abs(speed).max(), rel=1e-3)
+    assert asked["winch_speed"].state is State.FAILS
+    d = case.loaded.cable.diameter_m
+    turning = np.abs(speed).max() * 20.0 / (0.15 + 0.5 * d)
+    assert asked["motor_speed"].demand == pytest.approx(turning, rel=1e-3)
+    pulling = case.tension_N * np.maximum(-speed, 0.0) / 0.8
+    assert asked["motor_power"].demand == pytest.approx(pulling.max(), rel=5e-3)
+    assert asked["motor_power"].holds
+    torque = case.tension_N * (0.15 + 1.5 * d) / 20.0
+    assert case.torque_Nm is not None
+    assert case.rms_torque_Nm is not None
+    assert case.torque_Nm == pytest.approx(np.where(speed > 0.0, 0.8 * torque, torque / 0.8))
+    mean = np.trapezoid(case.torque_Nm**2, case.motion.time_s, axis=0) / 8.0
+    assert case.rms_torque_Nm == pytest.approx(np.sqrt(mean))
+    assert asked["winch_torque"].demand == pytest.approx((torque / 0.8).max(), rel=1e-6)
+    block = analysis.to_dict()["path"]
+    assert block["duration_s"] == 8.0
+    assert [each["cable"] for each in block["winches"]] == [1, 2, 3]
+    assert analysis.path is not None
+    lines = analysis.path.to_csv().splitlines()
+    assert len(lines) == 1 + len(case.motion.time_s)
+    assert lines[0].startswith("load_case,time_s,x_m")
