@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
+
 from designer.analysis.pose import PoseAnalysis
 from designer.effects.design import AsBuilt
 from designer.model.cable import Cable
@@ -14,7 +16,7 @@ from designer.model.requirement import Requirement, State
 from designer.model.verdict import Verdict
 from designer.progress import Reporter
 from designer.selection.assignment import Assignment
-from designer.selection.criteria import criteria_of
+from designer.selection.criteria import criteria_of, rope_diameter_m
 from designer.selection.family_need import CaseNeed
 from designer.selection.groups.result import GroupChoice
 from designer.selection.qualities import DesignCable
@@ -27,6 +29,7 @@ from designer.selection.requirements import (
     sheave_ratio_of,
 )
 from designer.selection.result import SelectionResult
+from designer.selection.spooling import spooling_of
 from designer.sizing.newton import size_poses
 from designer.study import Selection, Study
 from designer.workspace.result import WorkspaceMap
@@ -203,8 +206,21 @@ def _of_design(
     with reporter.task("requirements", len(loads)) as advance:
         for evaluation in evaluate(loads, criteria, advance):
             yield evaluation.requirement
-    if study.selection is not None and study.selection.limits.drum_capacity_m is not None:
-        yield from drum_of(*extreme_lengths_m(loads[0]), study.selection)
+    has_capacity = (
+        study.selection is not None and study.selection.limits.drum_capacity_m is not None
+    )
+    drum = built.robot.winches.drum
+    if has_capacity or drum is not None:
+        each = [
+            extreme_lengths_m(CaseLoads(of_case.workspace, (direction,)))
+            for of_case in loads
+            for direction in of_case.directions
+        ]
+        longest, shortest = zip(*each, strict=True)
+        lengths = np.fmax.reduce(longest), np.fmin.reduce(shortest)
+        yield from drum_of(*lengths, study.selection)
+        rope_m = np.broadcast_to(rope_diameter_m(design.cable), lengths[0].shape)
+        yield from spooling_of(drum, *lengths, rope_m.tolist())
 
 
 def design_loads(study: Study, built: AsBuilt, design: DesignCable) -> list[CaseLoads]:

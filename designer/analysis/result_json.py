@@ -13,6 +13,7 @@ from designer.analysis.modes import PlatformModes
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.selection_json import selection_dict
 from designer.analysis.uncertainty.uncertainty import uncertainty_dict
+from designer.analysis.winches import spooled_of
 from designer.documents.plain import RESULT_FORMAT, Json, lies_in, plain, record
 from designer.model.space import named_place
 from designer.model.verdict import Verdict
@@ -54,6 +55,7 @@ def result_dict(analysis: Analysis) -> Json:
             **(_modes(analysis.modes if is_read("modes") or is_read("modes_at") else None)),
             "path": _path(analysis),
             "reactions": analysis.reactions if is_read("reactions") else [],
+            "winches": spooled_of(analysis) if is_read("winches") else [],
             "findings": analysis.findings if is_read("findings") else None,
             "proof": (selection and selection.proof) or Proof("off"),
             "verification": analysis.verification if is_read("verification") else [],

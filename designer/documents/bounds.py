@@ -59,6 +59,7 @@ BOUNDS: Mapping[str, Bound] = {
     "part of a quaternion": Bound(units.NUMBER, -1.01, 1.01, "its length is 1"),
     "half turn": Bound(units.ANGLE, -math.pi, math.pi, "half a turn either way reaches all"),
     # A turn at most: a bare 90 that is meant in degrees shall not pass as 90 rad.
+    "fleet angle": Bound(units.ANGLE, 1e-4, 0.5, "a few degrees are too many; check the unit"),
     "angle": Bound(units.ANGLE, -2.0 * math.pi, 2.0 * math.pi, "a turn is 2 pi"),
     "speed": Bound(units.SPEED, 0.0, 120.0, "no storm is faster"),
     "acceleration": Bound(units.ACCELERATION, 0.0, 1e3, "no winch pulls so hard"),

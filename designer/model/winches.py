@@ -8,6 +8,7 @@ import numpy as np
 
 from designer import checked
 from designer.arrays import FloatArray, frozen_array
+from designer.model.drum import Drum
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,6 +35,8 @@ class Winches(checked.Value):
         Fastest that a winch hauls in or pays out [m/s].
     motor_speed_rad_per_s, motor_power_W : float or None
         Fastest that the motor turns, and the power that it may give or take [rad/s, W].
+    drum : Drum or None
+        What the rope is spooled on, where its length is known.
     """
 
     tension_max_N: checked.Positive | None = None
@@ -46,6 +49,7 @@ class Winches(checked.Value):
     speed_max_m_per_s: checked.Positive | None = None
     motor_speed_rad_per_s: checked.Positive | None = None
     motor_power_W: checked.Positive | None = None
+    drum: Drum | None = None
 
     def torque_Nm(self, tension_N: FloatArray, rope_diameter_m: FloatArray | float) -> FloatArray:
         """Return the motor's torque that pulls with a tension at the exit point (...) [N·m].

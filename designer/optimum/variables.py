@@ -107,7 +107,7 @@ _SENSES = {
     "safety_factor": 1, "inset": -1, "clearance": 1, "floor": 1,
     "sag": -1, "stiffness": 1, "drum_capacity": -1, "mass": 1, "dynamic_factor": 1,
     "acceleration": 1, "speed": 1, "thickness": 1, "tension_min": 1,
-    "tension_max": -1, "platform_frequency": 1,
+    "tension_max": -1, "platform_frequency": 1, "fleet_angle_max": -1, "dead_turns": 1,
 }  # fmt: skip
 """Whether more of a demand asks for more, by the last name of its field."""
 _ASKED = ("workspace", "selection", "load_cases", "pose", "uncertainty", "surroundings")
@@ -115,6 +115,8 @@ _OF_ROBOT = (("selection", "sheave_diameter"), ("selection", "termination_effici
 _ASKED_OF_ROBOT = (
     ("tension_min",),
     ("winches", "tension_max"),
+    ("winches", "drum", "fleet_angle_max"),
+    ("winches", "drum", "dead_turns"),
     ("platform", "mass"),
     ("platform", "wrench"),
 )

@@ -21,6 +21,7 @@ from designer.selection.requirements import (
     sheave_ratio_of,
     strength_of,
 )
+from designer.selection.spooling import spooling_of
 from designer.study import Selection
 
 
@@ -55,8 +56,7 @@ class Screen:
     def _failures(
         self, candidate: Candidate, evaluations: Sequence[Evaluation]
     ) -> Iterator[Requirement]:
-        verification = candidate.verification
-        for drum in drum_of(verification.longest_m, verification.shortest_m, self.selection):
+        for drum in self._drums(candidate):
             if not drum.holds:
                 yield drum
         for evaluation in evaluations:
@@ -68,17 +68,22 @@ class Screen:
             if at_place is not None and at_place.state is State.FAILS:
                 yield at_place
 
+    def _drums(self, candidate: Candidate) -> Iterator[Requirement]:
+        lengths = candidate.verification.longest_m, candidate.verification.shortest_m
+        drum = candidate.governing.loaded.robot.winches.drum
+        yield from drum_of(*lengths, self.selection)
+        yield from spooling_of(drum, *lengths, [candidate.size.diameter_m] * len(lengths[0]))
+
     def evaluated(self, candidate: Candidate) -> tuple[Requirement, ...]:
         """Return what a candidate comes to beside strength and sheave, evaluated in full once."""
         if candidate not in self._evaluations:
             loads = loads_of(candidate.cases)
             with self.reporter.task("requirements", len(loads)) as advance:
                 self._evaluations[candidate] = evaluate(loads, self.criteria, advance)
-        lengths = candidate.verification.longest_m, candidate.verification.shortest_m
         evaluations = self._evaluations[candidate]
         return (
             *(evaluation.requirement for evaluation in evaluations),
-            *drum_of(*lengths, self.selection),
+            *self._drums(candidate),
         )
 
     def requirements(self, candidate: Candidate) -> tuple[Requirement, ...]:

@@ -164,6 +164,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("robot.winches.gear_ratio", "default", "1"),
         Entry("robot.winches.efficiency", "default", "1"),
         Entry("robot.winches.motor", "default", "none"),
+        Entry("robot.winches.drum", "default", "none"),
         Entry("robot.attached", "default", "none"),
         Entry("cable.density", "5290 kg/m^3", "5290 kg/m^3"),
         Entry("cable.youngs_modulus", "62.7 GPa", "6.27e10 Pa"),

@@ -252,6 +252,12 @@ def _at(path: str, value_of: Callable[[Text], Any]) -> Callable[[Text], None]:
     return lambda study: _set(path, value_of(study))(study)
 
 
+def _spooling(study: Text) -> None:
+    _set("robot.winches.drum_diameter", 0.2)(study)
+    aside = {"sheave_distance": 9.0, "fleet_angle_max": 0.03}
+    _set("robot.winches.drum", {"length": 0.3} | aside)(study)
+
+
 def _nothing(study: Text) -> None:
     """Commands change no study."""
 
@@ -368,7 +374,8 @@ OPTIONS: tuple[Option, ...] = (
     Option("drum", "capacity of the drums", ALL, _set("selection.limits.drum_capacity", 12.0)),
     Option("platform_frequency", "frequency of the platform", ALL, _frequency),
     Option("duty_class", "duty class", ALL, _duty_class),
-    Option("winch_tension", "largest tension", ALL, _set("robot.winches", {"tension_max": 900.0})),
+    Option("winch_tension", "largest tension", ALL, _set("robot.winches.tension_max", 900.0)),
+    Option("spooling", "layers on the drums", ALL, _spooling),
     Option(
         "attached",
         "line along the cables",

@@ -163,9 +163,14 @@ _NO_CASES = "a workspace: a load case is for all its poses"
 _NO_ROPE = "a selection: it is the chosen rope that may not be enough"
 _NO_WINCHES = "a workspace: winches are held against what they meet in all its poses"
 _NO_MOTOR = "robot.winches.motor: {torque: …}, or leave it out"
+_NO_USE = "robot.winches.motor: {torque: …} or robot.winches.drum: {length: …}, or leave it out"
 _NO_DRUM = "robot.winches.drum_diameter, which tells the torque of a tension"
 _PATH = "workspace.path"
 _NO_PATH = "workspace.path, along which speed and power are evaluated"
+_DRUM = "robot.winches.drum"
+_NO_DIAMETER = "robot.winches.drum_diameter beside it"
+_NO_SHEAVE = f"{_DRUM}.sheave_distance, which tells the angle"
+_NO_ANGLE = f"{_DRUM}.fleet_angle_max, or leave it out"
 _NEEDS = (
     *(
         (f"robot.winches.{name}", _PATH, "there is no path, so that nothing moves", _NO_PATH)
@@ -177,8 +182,16 @@ _NEEDS = (
     (_UNCERTAINTY, "selection", "there is no selection", _NO_ROPE),
     *(
         (f"robot.winches.{name}", "robot.winches.motor", "there is no motor to drive it", _NO_MOTOR)
-        for name in ("drum_diameter", "layers", "gear_ratio", "efficiency")
+        for name in ("gear_ratio", "efficiency")
     ),
+    (
+        "robot.winches.drum",
+        "robot.winches.drum_diameter",
+        "its diameter is not given",
+        _NO_DIAMETER,
+    ),
+    (f"{_DRUM}.fleet_angle_max", f"{_DRUM}.sheave_distance", "there is no sheave", _NO_SHEAVE),
+    (f"{_DRUM}.sheave_distance", f"{_DRUM}.fleet_angle_max", "no angle is asked for", _NO_ANGLE),
     ("robot.winches.motor", "robot.winches.drum_diameter", "there is no drum", _NO_DRUM),
     ("robot.winches", "workspace", "there is no workspace", _NO_WINCHES),
 )
@@ -205,6 +218,11 @@ def fields_go_together(parts: Parts) -> Iterator[Fault]:
     for path, needed, problem, expected in _NEEDS:
         if path in given and parts.raw(needed) is None:
             yield parts.fault(path, problem, expected)
+    if parts.raw("robot.winches.motor") is None and parts.raw(_DRUM) is None:
+        for name in ("drum_diameter", "layers"):
+            if parts.raw(f"robot.winches.{name}") is not None:
+                problem = "there is no motor to drive it, and no length of the drum"
+                yield parts.fault(f"robot.winches.{name}", problem, _NO_USE)
     for path, problem, expected in _EXCLUDES:
         if path in given and parts.raw(_GROUPS) is not None:
             yield parts.fault(_GROUPS, problem, expected)

@@ -14,6 +14,7 @@ from designer.documents.fields import Text, WholeNumber, list_of, only_word
 from designer.documents.section import Section, config_field
 from designer.io.config.regions import AnyRegion, Box, only_one_of
 from designer.model.cable import NOTHING_ATTACHED, Attached
+from designer.model.drum import DEAD_TURNS, MOST_LAYERS, Drum
 from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import Region
 from designer.model.robot import Platform, Robot
@@ -97,6 +98,36 @@ class MotorSection(Section):
     """Power that the motor may give or take, along workspace.path."""
 
 
+class DrumSection(Section):
+    """The drum of a winch, which takes up the rope in layers."""
+
+    length: fields.SheaveDiameter = config_field(
+        "Length of the drum", expected="a length such as '0.8 m'"
+    )
+    """Between the flanges."""
+    groove_pitch: fields.RopeDiameter | None = config_field("Pitch of the grooves")
+    """From turn to turn; left out, the drum is smooth and turns touch."""
+    dead_turns: Annotated[int, WholeNumber(0, 100)] = config_field("Dead turns", DEAD_TURNS)
+    """Turns of the lowest layer that stay on the drum."""
+    sheave_distance: fields.Clearance | None = config_field("Distance of the first sheave")
+    """From the axis of the drum to the first sheave, which is opposite the drum's middle."""
+    fleet_angle_max: fields.FleetAngle | None = config_field("Largest fleet angle")
+    """Between the rope at a flange and the plane across the axis. For grooved drums of several
+    layers LEBUS International advises 0.25 to 1.25 deg, for one layer 3 deg at most."""
+
+    def drum(self, diameter_m: float, layers: int) -> Drum:
+        """Return the drum, of this diameter."""
+        return Drum(
+            diameter_m,
+            self.length,
+            layers,
+            self.groove_pitch,
+            self.dead_turns,
+            self.sheave_distance,
+            self.fleet_angle_max,
+        )
+
+
 class WinchesSection(Section):
     """The winches, one for each cable and all alike."""
 
@@ -111,7 +142,7 @@ class WinchesSection(Section):
 
     drum_diameter: fields.SheaveDiameter | None = config_field("Drum of a winch")
     """Diameter of the drum at the bottom of its grooves."""
-    layers: Annotated[int, WholeNumber(1, 50)] = config_field("Layers on the drum", 1)
+    layers: Annotated[int, WholeNumber(1, MOST_LAYERS)] = config_field("Layers on the drum", 1)
     """Layers of rope on the drum at most; torque is that on the outermost."""
     gear_ratio: fields.GearRatio = config_field("Gear ratio", 1.0)
     """Turns of the motor for one of the drum."""
@@ -119,6 +150,8 @@ class WinchesSection(Section):
     """Share of the motor's work that reaches the exit point: gear, drum and sheaves together."""
     motor: MotorSection | None = None
     """The motor of a winch."""
+    drum: DrumSection | None = None
+    """How much rope the drum takes up, and how far aside it runs."""
 
     def winches(self) -> Winches:
         """Return the winches."""
@@ -133,6 +166,9 @@ class WinchesSection(Section):
             self.speed_max,
             None if self.motor is None else self.motor.speed,
             None if self.motor is None else self.motor.power,
+            drum=None
+            if self.drum is None or self.drum_diameter is None
+            else self.drum.drum(self.drum_diameter, self.layers),
         )
 
 

@@ -15,8 +15,10 @@ import numpy as np
 from designer.analysis.analyse import Analysis
 from designer.analysis.governing import GoverningPose
 from designer.analysis.reactions import Reaction
+from designer.analysis.winches import spooled_of
 from designer.grades.grade import Grade, Size
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
+from designer.model.drum import DEAD_TURNS, Drum
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.report import format as fmt
@@ -27,13 +29,12 @@ from designer.report.templates import Statement, plain_statement
 from designer.selection.candidate import Candidate
 from designer.selection.efficiency import Allowance
 from designer.selection.samples import FEW_SAMPLES
+from designer.selection.spooling import Spooled
 from designer.statics.cable_loss import Fate
 from designer.study import Entry, Study, rope_effects
 
 Context = Mapping[str, object]
 
-DEAD_TURNS = 3
-"""Turns that stay on the drum; crane standards ask for two at least."""
 _MOST_PROPOSALS = 12
 """As many as a page has room for; result.json has all."""
 
@@ -199,10 +200,14 @@ class FabricatedCable:
     size: Size
     longest_m: float
     shortest_m: float
+    drum: Drum | None  # That of the study, and the rope on it
+    spooled: Spooled | None
 
     @property
     def turns(self) -> float:
-        """Turns of the suggested drum from the shortest to the longest length."""
+        """Turns of the study's drum, or the suggested one, from the shortest to the longest."""
+        if self.spooled is not None:
+            return self.spooled.turns
         return self.stroke_m / self.grade.drum_turn_m(self.size)
 
     @property
@@ -225,8 +230,10 @@ class FabricatedCable:
     @property
     def order_m(self) -> float:
         """The longest length with the dead turns, rounded up to a decimetre."""
-        turn_m = self.grade.drum_turn_m(self.size)
-        dead_m = 0.0 if math.isnan(turn_m) else DEAD_TURNS * turn_m
+        turn_m, dead_turns = self.grade.drum_turn_m(self.size), DEAD_TURNS
+        if self.drum is not None:
+            turn_m, dead_turns = self.drum.turn_m(self.size.diameter_m), self.drum.dead_turns
+        dead_m = 0.0 if math.isnan(turn_m) else dead_turns * turn_m
         return math.ceil(10.0 * (self.longest_m + dead_m)) / 10.0
 
 
@@ -243,6 +250,7 @@ def fabrication(analysis: Analysis) -> Context | None:
         "cables": cables,
         "ropes": [*ropes.values()],
         "allowance": Allowance.of(analysis.study.selection),
+        "drum": cables[0].drum,
         "dead_turns": DEAD_TURNS,
     }
 
@@ -253,8 +261,10 @@ def _cables(analysis: Analysis) -> Iterator[FabricatedCable]:
     verification = analysis.assignment.verification
     lengths = zip(verification.longest_m.tolist(), verification.shortest_m.tolist(), strict=True)
     ropes = zip(analysis.assignment.by_cable, lengths, strict=True)
-    for number, (rope, (longest_m, shortest_m)) in enumerate(ropes, start=1):
-        yield FabricatedCable(number, rope.grade, rope.size, longest_m, shortest_m)
+    drum, on_drum = analysis.built.robot.winches.drum, spooled_of(analysis)
+    for k, (rope, ends_m) in enumerate(ropes):
+        spooled = on_drum[k] if on_drum else None
+        yield FabricatedCable(k + 1, rope.grade, rope.size, *ends_m, drum, spooled)
 
 
 def path(analysis: Analysis) -> Context | None:
