@@ -15,7 +15,7 @@ from designer.diagnosis.statistics import score_covariances
 from designer.effects.effect import Effect, Setting, Values
 
 _JUMP = 1e3
-"""Over the median of all rows' slopes: where poses are fitted, no slope, but another balance."""
+"""Of the noise and of the median row's change: no slope, but another balance of a fitted pose."""
 HUBER = 3.0
 """Standard deviations up to which a residual counts by its square: noise exceeds it in 1 of 370."""
 
@@ -259,10 +259,8 @@ def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> Floa
             settings_there = tuple(there if s is own else s for s in settings)
             change = problem.in_noise(settings_there) - predicted
             if problem.predict.row_unknowns:
-                size = np.abs(change)
-                is_usual = np.nan_to_num(size) > 0.0
-                usual = np.median(size[is_usual]) if is_usual.any() else np.inf
-                change[size > _JUMP * usual] = np.nan
+                size = np.nan_to_num(np.abs(change)).max(axis=1)
+                change[size > _JUMP * max(1.0, float(np.median(size)))] = np.nan
             slope = np.where(is_lost, -change / (moved - value), slope)
         slopes.append(np.where(is_read, np.nan_to_num(slope), np.nan))
     return np.stack(slopes, axis=-1)

@@ -84,7 +84,8 @@ def straight_length_m(
     """
     radius = np.asarray(radius_m, dtype=np.float64)
     slope = straight_slope_rad(horizontal_distance_m, drop_m, radius)
-    free = np.sqrt((horizontal_distance_m - radius) ** 2 + drop_m**2 - radius**2)
+    with np.errstate(invalid="ignore"):
+        free = np.sqrt((horizontal_distance_m - radius) ** 2 + drop_m**2 - radius**2)
     return np.asarray(free + wrap_length_m(slope, radius))
 
 
