@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from xdist.scheduler import LoadFileScheduling
 
 from designer.arrays import frozen_array
 from designer.cli import terminal
@@ -21,6 +22,20 @@ from designer.model.workspace import Workspace
 from designer.plugins import examine
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_massless
+
+TOGETHER = ("tests/report/test_figures_", "tests/report/test_report_")
+"""How files begin that share studies which take long to solve: one worker runs them all."""
+
+
+class _Together(LoadFileScheduling):
+    def _split_scope(self, nodeid: str) -> str:
+        file = super()._split_scope(nodeid)
+        return next((start for start in TOGETHER if file.startswith(start)), file)
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> _Together | None:
+    """Share out files, those of `TOGETHER` to one worker."""
+    return _Together(config, log) if config.getvalue("dist") == "loadfile" else None
 
 
 @pytest.hookimpl(tryfirst=True)
