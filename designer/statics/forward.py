@@ -122,7 +122,7 @@ class _EnergyDescent:
         """Step until every problem has come to rest or to its end."""
         everything = np.ones(len(self.length_m), dtype=np.bool_)
         statics = self.statics(everything, Poses(self.position, self.rotation))
-        self.push = _push(statics)
+        self.push, self.stiffness = _push(statics), self._stiffness(statics)
         active = np.asarray(np.isfinite(self.push).all(axis=-1))
         for _ in range(_MOST_STEPS):
             if not active.any():
@@ -132,13 +132,13 @@ class _EnergyDescent:
 
     def _step(self, active: BoolArray) -> None:
         poses = Poses(self.position[active], self.rotation[active])
-        stiffness = scaled(self.robot, upright_stiffness(self.statics(active, poses)))
-        step, rounding = _newton_step(stiffness, self.push[active], self.size)
+        step, rounding = _newton_step(self.stiffness[active], self.push[active], self.size)
         length = np.linalg.norm(step, axis=-1)
         radius = self.radius[active]
         step = step * np.minimum(1.0, radius / np.maximum(length, 1e-300))[:, None]
         trial = moved_poses(self.robot, poses, step)
-        push = _push(self.statics(active, trial))
+        statics = self.statics(active, trial)
+        push, stiffness = _push(statics), self._stiffness(statics)
         before, after = self.push[active], push
         rests = np.linalg.norm(before, axis=-1) <= rounding
         mean_work = np.einsum("pi,pi->p", before + after, step)
@@ -152,7 +152,10 @@ class _EnergyDescent:
         moved = np.flatnonzero(active)[is_kept]
         self.position[moved] = trial.position_m[is_kept]
         self.rotation[moved] = trial.rotation[is_kept]
-        self.push[moved] = push[is_kept]
+        self.push[moved], self.stiffness[moved] = push[is_kept], stiffness[is_kept]
+
+    def _stiffness(self, statics: Statics) -> FloatArray:
+        return scaled(self.robot, upright_stiffness(statics))
 
 
 def moved_poses(robot: Robot, poses: Poses, step_m: FloatArray) -> Poses:
