@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from report_cases import CASES, DEFAULTS, FAST
+from altered import altered
+from report_cases import CASES, CLEARANCE_KEPT, CLEARANCE_NOT_KEPT, DEFAULTS, FAST
 
 from designer.analysis.analyse import Analysis, analyse
 from designer.grades.registry import load_catalogue
@@ -46,8 +48,17 @@ class Analyses(Mapping[str, Analysis]):
 
     def __getitem__(self, name: str) -> Analysis:
         if name not in self._solved:
-            self._solved[name] = self._solve(FAST.format(**{**DEFAULTS, **CASES[name]}))
+            self._solved[name] = self._renamed() if name == "markup" else self._of(name)
         return self._solved[name]
+
+    def _of(self, name: str) -> Analysis:
+        return self._solve(FAST.format(**{**DEFAULTS, **CASES[name]}))
+
+    def _renamed(self) -> Analysis:
+        """The first case under another name, which changes no number."""
+        assert CASES["markup"].keys() == {"name"}
+        study = self["positive"].study
+        return altered(self["positive"], study=replace(study, name=CASES["markup"]["name"][1:-1]))
 
     def __iter__(self) -> Iterator[str]:
         return iter(CASES)
@@ -76,3 +87,15 @@ def yard(solve: Callable[[str], Analysis]) -> Analysis:
 
     text = example_file("yard").read_text(encoding="utf-8")
     return solve(text.replace("samples: 20000", "samples: 300"))
+
+
+@pytest.fixture(scope="session")
+def kept(solve: Callable[[str], Analysis]) -> Analysis:
+    """Six cables with a rope that keeps its clearance."""
+    return solve(CLEARANCE_KEPT)
+
+
+@pytest.fixture(scope="session")
+def not_kept(solve: Callable[[str], Analysis]) -> Analysis:
+    """Six cables of the family, which do not keep a clearance of 0.4 m."""
+    return solve(CLEARANCE_NOT_KEPT)

@@ -8,10 +8,9 @@ from collections.abc import Callable
 
 import pytest
 from altered import altered
-from report_cases import DEFAULTS, FAST
+from report_cases import DEFAULTS, FAST, PRISM, SELECTION, SIX
 from report_parts import FirstPage, cells, first_page, paragraphs, said
 from test_report_groups import YARD
-from test_report_qualities import PRISM, SELECTION, SIX
 
 from designer.analysis.analyse import Analysis
 from designer.grades.grade import Limits
@@ -94,20 +93,28 @@ def test_limits_of_the_grade_are_cautions(
         assert "from −40 to 70\u00a0°C" in found["Temperature"].text
 
 
-@pytest.mark.parametrize("selection", ["", SELECTION])
-def test_a_violated_clearance_is_on_the_first_page(solve: Solve, selection: str) -> None:
-    analysis = solve(SIX.format(region=PRISM, clearance="2 m", selection=selection))
-    page = page_of(analysis)
+@pytest.fixture(scope="module")
+def far_apart(solve: Solve) -> Analysis:
+    return solve(SIX.format(region=PRISM, clearance="2 m", selection=SELECTION))
+
+
+@pytest.mark.parametrize(
+    ("name", "demand"), [("not_kept", "400\u00a0mm"), ("far_apart", "2.00\u00a0m")]
+)
+def test_a_violated_clearance_is_on_the_first_page(
+    name: str, demand: str, request: pytest.FixtureRequest
+) -> None:
+    """Of cables of the family, and of a chosen rope."""
+    page = page_of(request.getfixturevalue(name))
     assert page.verdict.title == "No"
     assert page.verdict.text.endswith("ut clearance does not hold.")
     assert [reason.title for reason in page.reasons] == ["Clearance does not hold"]
-    assert "demand 2.00\u00a0m" in page.reasons[0].text
+    assert f"demand {demand}" in page.reasons[0].text
     assert "require less clearance" in page.actions[0]
 
 
-def test_a_kept_clearance_is_no_objection(solve: Solve) -> None:
-    analysis = solve(SIX.format(region=PRISM, clearance="0.01 m", selection=SELECTION))
-    page = page_of(analysis)
+def test_a_kept_clearance_is_no_objection(kept: Analysis) -> None:
+    page = page_of(kept)
     assert page.verdict.title == "Yes"
     assert page.reasons == page.actions == ()
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from report_cases import SIX
 from report_parts import paragraphs, said, table
-from test_report_qualities import SIX
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict

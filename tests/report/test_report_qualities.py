@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from altered import altered
+from report_cases import SIX
 from report_parts import facts, pictures, said, statements, tables
 
 from designer.analysis.analyse import Analysis
@@ -23,37 +24,7 @@ from designer.selection.qualities import Qualities
 
 pytestmark = pytest.mark.slow
 
-SIX = """
-name: Six cables
-robot:
-  anchors:
-    - [30, 0, 12]
-    - [30, 0.8, 12]
-    - [-15, 26, 12]
-    - [-15.7, 25.6, 12]
-    - [-15, -26, 12]
-    - [-14.3, -26.4, 12]
-  platform:
-    mass: 900 kg
-    attachments: [[1, -1.73, 0], [1, 1.73, 0], [1, 1.73, 0], [-2, 0, 0], [-2, 0, 0], [1, -1.73, 0]]
-    centre_of_mass: [0, 0, -0.5]
-    hull: [[-2, 1], [-1.8, 1.8], [-1, 0]]
-cable: {{density: 5290 kg/m^3, youngs_modulus: 62.7 GPa, allowable_stress: 198 MPa}}
-workspace:
-  region: {region}
-  samples: 60
-  clearance: {clearance}
-{selection}
-"""
-PRISM = "{prism: anchors, inset: 9 m, z: [1, 8]}"
-SELECTION = "selection: {grades: [lg-7x19-wsc-galvanised-2070], safety_factor: 2}"
-
 Solve = Callable[[str], Analysis]
-
-
-@pytest.fixture(scope="module")
-def kept(solve: Solve) -> Analysis:
-    return solve(SIX.format(region=PRISM, clearance="0.1 m", selection=SELECTION))
 
 
 def surveyed(qualities: Qualities, **surveys: object) -> Qualities:
@@ -61,11 +32,6 @@ def surveyed(qualities: Qualities, **surveys: object) -> Qualities:
     changed = replace(qualities)
     vars(changed).update(surveys)
     return changed
-
-
-@pytest.fixture(scope="module")
-def not_kept(solve: Solve) -> Analysis:
-    return solve(SIX.format(region=PRISM, clearance="0.4 m", selection=""))
 
 
 def test_the_cable_is_the_chosen_rope_or_that_of_the_family(
