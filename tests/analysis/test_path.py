@@ -16,6 +16,9 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.path import PathCase
 from designer.model.motion import Motion, limited, timed, unwrapped
 from designer.model.requirement import State
+from designer.report.design.drawings import Drawings
+from designer.report.design.report import section
+from designer.report.render import rendered
 from designer.statics.reactions import platform_branch_N
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -244,3 +247,22 @@ def test_winches_and_motors_against_what_they_do(tmp_path: Path) -> None:
     lines = analysis.path.to_csv().splitlines()
     assert len(lines) == 1 + len(case.motion.time_s)
     assert lines[0].startswith("load_case,time_s,x_m")
+
+
+def test_page_of_the_report(tmp_path: Path) -> None:
+    rows = np.array([[5.0, 3.0, 4.0], [7.0, 4.0, 5.0], [6.0, 5.0, 3.0]])
+    cases = [{"name": "empty", "mass": 120.0}, {"name": "windy", "wind": {"speed": 8.0}}]
+    study = study_on("crane", tmp_path, rows, [0, 4, 8], load_cases=cases)
+    analysis = analysed(study, tmp_path)
+    assert analysis.path is not None
+    assert [case.name for case in analysis.path.cases] == ["empty", "windy"]
+    assert len(analysis.path.directions[1]) == 8
+    drawings = Drawings(analysis, draws=True, missing="no scenes here")
+    page = rendered(section(drawings, "path")).body
+    assert "a cubic spline in time through 3 rows of path.csv" in page
+    assert page.count("<tr") == 1 + 2 * 3
+    assert "cable 3" in page  # of the chart
+    summary = rendered(section(drawings, "answer")).body
+    assert "instants of the path were solved one by one" in summary
+    light, windy = (case.tension_N.max() for case in analysis.path.cases)
+    assert light < 0.7 * windy

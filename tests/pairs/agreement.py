@@ -19,6 +19,7 @@ from pairs.quantities import (
 from pairs.reference import Pose, Problem, State, feasible, hang, load_on, settle, solve
 from pairs.scenario import (
     growth_of,
+    in_motion,
     level_directions,
     problem_of,
     random_places,
@@ -65,6 +66,10 @@ class Situation:
     @property
     def problem(self) -> Problem:
         return problem_of(self.text, self.ropes, self.case, self.wind, self.inertia)
+
+    def problem_at(self, pose: Pose) -> Problem:
+        """Return the problem with the inertia that it has in a pose."""
+        return in_motion(self.problem, self.text, self.case, pose.position_m)
 
     @property
     def growth(self) -> float:
@@ -118,7 +123,7 @@ def hangs_below(state: State) -> bool:
 
 def is_slack(one: Situation, pose: Pose) -> bool:
     """Tell whether the limit on sag governs the choice of the internal forces."""
-    problem = one.problem
+    problem = one.problem_at(pose)
     if problem.n == len(problem.freedoms):
         return False
     state = solve(problem, pose)
@@ -131,7 +136,7 @@ def tension_at(one: Situation, pose: Pose, ours: CaseResult | None = None) -> tu
     Of robots that choose internal forces on kept lengths the lengths are ours: the reference says
     whether they are as good as its own.
     """
-    best = solve(one.problem, pose)
+    best = solve(one.problem_at(pose), pose)
     if best is None:
         return np.inf, ""
     if not one.keeps_lengths:
@@ -194,7 +199,7 @@ def _no_worse(
     excludes = one.text["workspace"].get("hangs_below") == "exclude"
     for pose in random_places(one.text, one.case, others, rng) if others else ():
         there = one.turned(rng)
-        problem = there.problem
+        problem = there.problem_at(pose)
         if not one.keeps_lengths and not excludes:
             some = feasible(problem, pose)
             if some is not None and some.utilisation <= most * (1.0 + SAME):
@@ -211,7 +216,8 @@ def _no_worse(
 
 def state_at(there: Situation, loaded: Loaded, place: np.ndarray) -> State | None:
     """Return the state in a pose with the lengths that we choose there; None where none holds."""
-    pose, poses, problem = Pose.of(place), Poses.at(place[None]), there.problem
+    pose, poses = Pose.of(place), Poses.at(place[None])
+    problem = there.problem_at(pose)
     if not there.keeps_lengths:
         length = solve_sagging(loaded.robot, poses, loaded.cable).length_m[0]
         hung = hang(problem, pose, length, near=feasible(problem, pose))
@@ -247,7 +253,7 @@ def _requirement(text, ropes, analysis: Analysis, one: Requirement) -> Iterator[
         same = ON_PULLEYS if "pulley_radius" in text.get("effects", {}) else ELEMENTS
     if not np.isclose(ours, theirs, rtol=same, atol=1e-6 * (one.id in LENGTHS)):
         yield f"{name}: {ours:.9g}, reference {theirs:.9g} at {one.place}"
-    region = case.get("region") or text["workspace"]["region"]
+    region = case.get("region") or text["workspace"].get("region", {})
     if (
         one.id in ("stability", "stiffness", "clearance", "platform_frequency")
         or "points" not in region

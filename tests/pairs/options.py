@@ -144,6 +144,23 @@ BASES: Mapping[str, Text] = {
         planar=True,
     ),
 }  # fmt: skip
+PATHS: Mapping[str, tuple[list[float], list[float]]] = {
+    f"path-{name}.csv": (base["workspace"]["region"]["points"][0],
+                         base["workspace"]["region"]["points"][-1])
+    for name, base in BASES.items()
+}  # fmt: skip
+"""Files of paths: the two ends of a straight line, from rest to rest in `PATH_S`."""
+PATH_S = 6.0
+
+
+def path_text(name: str) -> str:
+    """Return what a file of a path holds."""
+    rows = (
+        f"{t},{x!r},{y!r},{z!r}" for t, (x, y, z) in zip((0.0, PATH_S), PATHS[name], strict=True)
+    )
+    return "\n".join(["time_s,x_m,y_m,z_m", *rows, ""])
+
+
 POINT = ("crane", "four")
 SPACE = ("crane", "four", "six", "body")
 REDUNDANT = ("four", "body", "plane")
@@ -256,6 +273,14 @@ def _spooling(study: Text) -> None:
     _set("robot.winches.drum_diameter", 0.2)(study)
     aside = {"sheave_distance": 9.0, "fleet_angle_max": 0.03}
     _set("robot.winches.drum", {"length": 0.3} | aside)(study)
+
+
+def _path(study: Text) -> None:
+    name = next(name for name, base in BASES.items() if base["name"] == study["name"])
+    study["workspace"]["path"] = f"path-{name}.csv"
+    study["workspace"].pop("proof")
+    if "points" in study["workspace"]["region"]:
+        del study["workspace"]["region"]
 
 
 def _nothing(study: Text) -> None:
@@ -401,6 +426,7 @@ OPTIONS: tuple[Option, ...] = (
             {"payload": {"uniform": 0.1}, "modulus": {"uniform": 0.01}, "samples": 128},
         ),
     ),
+    Option("path", "path with inertia", ALL, _path),
     Option(
         "lengths",
         "`designer lengths`",

@@ -8,9 +8,11 @@ table of effects.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from pairs.options import PATH_S, PATHS
 from pairs.reference import Pose, Problem
 from scipy.spatial.transform import Rotation
 
@@ -160,6 +162,10 @@ def growth_of(study: Data, case: Data, grade: Data) -> float:
 
 def random_places(study: Data, case: Data, count: int, rng: np.random.Generator) -> list[Pose]:
     """Return random poses of a case's region, corners too; of a list all of them."""
+    if "path" in study["workspace"]:
+        shares = rng.integers(401, size=count) / 400
+        turn = turns_of(study, 1, rng)[0]
+        return [Pose(line_at(study, share)[0], turn) for share in shares]
     region = case.get("region") or study["workspace"]["region"]
     if "points" in region:
         positions = np.array(region["points"], dtype=float)
@@ -183,6 +189,34 @@ def random_places(study: Data, case: Data, count: int, rng: np.random.Generator)
         return [Pose(position, turn) for position in positions for turn in turns]
     at = rng.integers(len(positions), size=count) if "points" in region else np.arange(count)
     return [Pose(positions[k], turns[rng.integers(len(turns))]) for k in at]
+
+
+def line_at(study: Data, share: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return position and acceleration at a share of the time of the path, at rest at ends."""
+    first, last = np.array(PATHS[study["workspace"]["path"]])
+    along = last - first
+    gain = along * (6.0 - 12.0 * share) / PATH_S**2
+    return first + along * (3.0 - 2.0 * share) * share**2, gain
+
+
+def in_motion(problem: Problem, study: Data, case: Data, position: np.ndarray) -> Problem:
+    """Return a problem with what the inertia of the platform asks for at a position of the path."""
+    if "path" not in study["workspace"]:
+        return problem
+    first, last = np.array(PATHS[study["workspace"]["path"]])
+    done = (position - first) @ (last - first) / ((last - first) @ (last - first))
+    roots = np.roots([-2.0, 3.0, 0.0, -np.clip(done, 0.0, 1.0)]).real
+    share = roots[np.abs(roots - 0.5).argmin()]
+    mass = case.get("mass") or study["robot"]["platform"]["mass"]
+    mass += study.get("effects", {}).get("platform_mass", {}).get("offset_kg", 0.0)
+    force = -mass * line_at(study, share)[1]
+    turn = turns_of(study, 1, np.random.default_rng(0))[0]
+    arm = Rotation.from_rotvec(turn).apply(problem.centre_m)
+    return replace(
+        problem,
+        force_N=problem.force_N + force,
+        moment_Nm=problem.moment_Nm + np.cross(arm, force),
+    )
 
 
 def turn_toward(position: np.ndarray, facing: Data) -> np.ndarray:

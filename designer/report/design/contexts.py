@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import zip_longest
+from typing import Any
 
 import numpy as np
 
@@ -35,6 +36,8 @@ from designer.study import Entry, Study, rope_effects
 
 Context = Mapping[str, object]
 
+_TRACE = 1e-4
+"""Of the largest number of a column: below, a number is what differences leave of nothing."""
 _MOST_PROPOSALS = 12
 """As many as a page has room for; result.json has all."""
 
@@ -278,12 +281,26 @@ def path(analysis: Analysis) -> Context | None:
         "path": path,
         "summary": summary,
         "shown": path.shown,
-        "rows": summary["winches"],
+        "rows": _without_traces(summary["winches"]),
         "totals": [(case.name, *both) for case, both in zip(path.cases, energies, strict=True)],
+        "energy": ("kJ", 1e3) if max(map(sum, energies)) >= 1e3 else ("J", 1.0),
         "inertia_share": max(case.cable_share for case in path.cases),
         "winches": analysis.built.robot.winches,
         "cable": qualities.cable.name,
     }
+
+
+def _without_traces(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return rows with zeros for numbers that are nothing beside the largest of their column."""
+    largest = {
+        name: max(abs(row[name]) for row in rows)
+        for name, value in rows[0].items()
+        if isinstance(value, float)
+    }
+    return [
+        {k: 0.0 if k in largest and abs(v) < _TRACE * largest[k] else v for k, v in row.items()}
+        for row in rows
+    ]
 
 
 def reactions(analysis: Analysis) -> Context | None:
