@@ -33,7 +33,6 @@ from designer.model.verdict import Verdict
 from designer.model.winches import Winches
 from designer.selection.criteria import rope_diameter_m
 from designer.statics.inverse import Statics, solve_sagging
-from designer.statics.modes import cable_mass_matrix, platform_mass_matrix
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
@@ -133,19 +132,10 @@ class PathCase:
 
     @cached_property
     def cable_share(self) -> float:
-        """Largest inertia force of the cables over that of all that moves; zero at rest.
-
-        Of the consistent mass of each cable (`designer.physics.inertia`), along its acceleration.
-        """
-        robot, rows = self.statics.robot, self.statics.robot.balance_rows
-        cables = cable_mass_matrix(self.statics, self.loaded.moving_density_kg_per_m)
-        body = platform_mass_matrix(self.statics, self.loaded.moving_body)
-        rates = self.motion.acceleration.reshape(-1, 2, 3) @ robot.upright.T
-        rate = rates.reshape(-1, 6)[:, rows]
-        moved, all_moved = (
-            np.einsum("ni,nij,nj->n", rate, mass, rate) for mass in (cables, cables + body)
-        )
-        return float(np.max(moved / np.where(all_moved > 0.0, all_moved, np.inf)))
+        """Largest share of the cables, as far as paid out, in the mass of all that moves."""
+        cables_kg = self.loaded.moving_density_kg_per_m * self.statics.length_m
+        total_kg = np.sum(cables_kg, axis=-1)
+        return float(np.max(total_kg / (total_kg + self.loaded.moving_body.mass_kg)))
 
     def rows(self) -> Iterator[dict[str, object]]:
         """Yield what result files hold of each cable."""

@@ -255,6 +255,7 @@ def test_page_of_the_report(tmp_path: Path) -> None:
     study = study_on("crane", tmp_path, rows, [0, 4, 8], load_cases=cases)
     analysis = analysed(study, tmp_path)
     assert analysis.path is not None
+    assert analysis.chosen is not None
     assert [case.name for case in analysis.path.cases] == ["empty", "windy"]
     assert len(analysis.path.directions[1]) == 8
     drawings = Drawings(analysis, draws=True, missing="no scenes here")
@@ -266,3 +267,6 @@ def test_page_of_the_report(tmp_path: Path) -> None:
     assert "instants of the path were solved one by one" in summary
     light, windy = (case.tension_N.max() for case in analysis.path.cases)
     assert light < 0.7 * windy
+    for case, mass in zip(analysis.path.cases, (120.0, 240.0), strict=True):
+        rope = analysis.chosen.cable.linear_density_kg_per_m * case.statics.length_m.sum(axis=1)
+        assert case.cable_share == pytest.approx((rope / (rope + mass)).max())
