@@ -168,7 +168,9 @@ def test_a_study_that_asks_for_every_check_lacks_none(solve: Callable[[str], Ana
     assert section is not None
     lacking = said(section).partition("Not evaluated: ")[2].partition(".")[0]
     assert lacking == (
-        "tension of winches (no largest is given), torque of motors (none is given), height over "
-        "a floor (none is given) and "
-        "natural frequencies of the platform (no limit is given)"
+        "tension of winches (no largest is given), torque of motors (none is given), speed of "
+        "winches (none is given), speed of motors (none is given), power of motors (none is "
+        "given), height over a floor (none is given), natural frequencies of the platform (no "
+        "limit is given), layers on the drums (their length is not given) and fleet angle (none "
+        "is given)"
     )
