@@ -410,7 +410,11 @@ def analyse(
         If the study has neither pose nor workspace, the robot has fewer cables than degrees of
         freedom, or a grade is not in the catalogue.
     """
-    analysis = Analysis.begin(study, catalogue, folder, reporter)
+    return finished(Analysis.begin(study, catalogue, folder, reporter))
+
+
+def finished(analysis: Analysis) -> Analysis:
+    """Return an analysis of which every stage is computed: that of a report."""
     for stage in _STAGES:
         getattr(analysis, stage)
     if analysis.pose is not None:

@@ -11,7 +11,7 @@ import pytest
 from altered import altered
 from report_cases import CASES, CLEARANCE_KEPT, CLEARANCE_NOT_KEPT, DEFAULTS, FAST
 
-from designer.analysis.analyse import Analysis, analyse
+from designer.analysis.analyse import Analysis
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.progress import Advance
@@ -27,14 +27,15 @@ class Silent:
 
 @pytest.fixture(scope="session")
 def solve(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Analysis]:
-    """Solve a config text."""
+    """Return the analysis of a config text, each stage of which is computed when it is read."""
 
     def solved(text: str) -> Analysis:
         folder = tmp_path_factory.mktemp("study")
         config = folder / "study.yaml"
         config.write_text(text, encoding="utf-8")
         study = read_study(config)
-        return analyse(study, load_catalogue(with_plugins=False), Path(folder), Silent())
+        catalogue = load_catalogue(with_plugins=False)
+        return Analysis.begin(study, catalogue, Path(folder), Silent())
 
     return solved
 

@@ -9,7 +9,7 @@ import pytest
 from test_report_groups import YARD as GROUPS
 from test_report_load_cases import CASES, FAMILY, YARD
 
-from designer.analysis.analyse import Analysis
+from designer.analysis.analyse import Analysis, finished
 from designer.report.design.report import design_report
 
 SOLVERS = (
@@ -61,7 +61,7 @@ CONFIGS = {
     ]
 )
 def analysis(request: pytest.FixtureRequest, solve: Callable[[str], Analysis]) -> Analysis:
-    return solve(CONFIGS[request.param])
+    return finished(solve(CONFIGS[request.param]))
 
 
 def test_a_text_takes_no_solver(analysis: Analysis, without_solvers: None) -> None:
@@ -73,14 +73,14 @@ def test_a_text_takes_no_solver(analysis: Analysis, without_solvers: None) -> No
 def test_nor_does_that_of_a_crane_of_great_span(
     name: str, analyses: dict[str, Analysis], request: pytest.FixtureRequest
 ) -> None:
-    finished = analyses[name]
+    analysis = finished(analyses[name])
     request.getfixturevalue("without_solvers")
-    assert design_report(finished, draws=False).sections
+    assert design_report(analysis, draws=False).sections
 
 
 def test_the_results_of_an_analysis_take_no_solver_either(
     solve: Callable[[str], Analysis], request: pytest.FixtureRequest
 ) -> None:
-    finished = solve(POSE)
+    analysis = finished(solve(POSE))
     request.getfixturevalue("without_solvers")
-    assert finished.to_dict()["pose"]["rest"] is not None
+    assert analysis.to_dict()["pose"]["rest"] is not None
