@@ -256,8 +256,14 @@ def path_requirements(analysis: Analysis) -> Iterator[Requirement]:
             row, cable = np.unravel_index(int(np.nan_to_num(size).argmax()), size.shape)
             demand, is_known = float(size[row, cable]), all(case.is_held for case in directions)
             state = State.HOLDS if is_known else State.OPEN
+            remark = f"at {case.motion.time_s[row]:.4g} s"
             if demand > limit:
                 state = State.FAILS
+                if (
+                    case.statics.robot.is_redundant
+                ):  # the tensions of the answer are not the only ones
+                    state = State.OPEN
+                    remark += " with the least largest tension; other internal forces may need less"
             yield Requirement(
                 id=id_,
                 title=title,
@@ -272,7 +278,7 @@ def path_requirements(analysis: Analysis) -> Iterator[Requirement]:
                 cable=int(cable) + 1,
                 place=case.motion.places[row],
                 loaded=case.loaded,
-                remark=f"at {case.motion.time_s[row]:.4g} s",
+                remark=remark,
             )
 
 

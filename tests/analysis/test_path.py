@@ -270,3 +270,15 @@ def test_page_of_the_report(tmp_path: Path) -> None:
     for case, mass in zip(analysis.path.cases, (120.0, 240.0), strict=True):
         rope = analysis.chosen.cable.linear_density_kg_per_m * case.statics.length_m.sum(axis=1)
         assert case.cable_share == pytest.approx((rope / (rope + mass)).max())
+
+
+def test_a_speed_of_cables_to_spare_is_open_beyond_its_limit(tmp_path: Path) -> None:
+    anchors = [*BASES["crane"]["robot"]["anchors"], [11.0, 0.5, 9.0]]
+    winches = {"speed_max": 0.05}
+    robot = BASES["crane"]["robot"] | {"anchors": anchors, "winches": winches}
+    rows = np.array([[5.0, 3.0, 4.0], [7.0, 4.0, 5.0], [6.0, 5.0, 3.0]])
+    analysis = analysed(study_on("crane", tmp_path, rows, [0, 4, 8], robot=robot), tmp_path)
+    (asked,) = (each for each in analysis.requirements if each.id == "winch_speed")
+    assert asked.demand > asked.capacity
+    assert asked.state is State.OPEN
+    assert "other internal forces may need less" in asked.remark

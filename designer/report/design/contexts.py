@@ -279,6 +279,7 @@ def path(analysis: Analysis) -> Context | None:
     energies = [[energy.sum() for energy in case.energy_J] for case in path.cases]
     return {
         "path": path,
+        "is_redundant": analysis.study.robot.is_redundant,
         "summary": summary,
         "shown": path.shown,
         "rows": _without_traces(summary["winches"]),
