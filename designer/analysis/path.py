@@ -259,9 +259,7 @@ def path_requirements(analysis: Analysis) -> Iterator[Requirement]:
             remark = f"at {case.motion.time_s[row]:.4g} s"
             if demand > limit:
                 state = State.FAILS
-                if (
-                    case.statics.robot.is_redundant
-                ):  # the tensions of the answer are not the only ones
+                if case.statics.robot.is_redundant:  # it could be held by other tensions
                     state = State.OPEN
                     remark += " with the least largest tension; other internal forces may need less"
             yield Requirement(
