@@ -85,7 +85,5 @@ def diagnose(
     from designer.measured.read import read_measured
 
     if data is not None and study.measurements is not None:
-        study = replace(
-            study, measurements=replace(study.measurements, file=Path(data), more_files=())
-        )
+        study = replace(study, measurements=study.measurements.of_file(Path(data)))
     return diagnose_study(study, read_measured(study), progress)

@@ -228,6 +228,7 @@ class Study:
 
     ``known_effects`` are those that ``effects`` may declare and a diagnosis may find; ``family``
     is the grade that ``material`` stands for, None where the study gives its figures.
+    ``session_effects`` are effects of single sessions of the measurements, in their order.
     """
 
     name: str
@@ -246,6 +247,7 @@ class Study:
     document: DocumentControl = DocumentControl()
     load_cases: tuple[LoadCase, ...] = ()
     uncertainty: Uncertainty | None = None
+    session_effects: tuple[tuple[DeclaredEffect, ...], ...] = ()
 
     def __post_init__(self) -> None:
         self._check_load_cases()
@@ -261,6 +263,10 @@ class Study:
             raise ValueError(
                 f"groups must have every cable from 1 to {len(every)} once; wrong is {wrong}"
             )
+
+    def effects_of_session(self, session: int) -> tuple[DeclaredEffect, ...]:
+        """Return what is declared of one session of the measurements alone, from 1."""
+        return self.session_effects[session - 1] if self.session_effects else ()
 
     def _check_load_cases(self) -> None:
         names = [case.name for case in self.load_cases]

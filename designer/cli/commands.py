@@ -284,7 +284,7 @@ def diagnose(
     if data is not None and study.measurements is not None:
         if not data.is_file() and not is_bag(data):
             raise InputError.at("--data", f"there is no file {data}", "a CSV file")
-        study = replace(study, measurements=replace(study.measurements, file=data, more_files=()))
+        study = replace(study, measurements=study.measurements.of_file(data))
     measured = read_measured(study)
     catalogue = None if checks else catalogue_of(study, plugins)
     announce_compiling()

@@ -129,9 +129,10 @@ def _cable(study: Study, plugins: Plugins, bars: ProgressBars) -> tuple[Cable, s
 def _measurements(study: Study, rope: Cable) -> Measurements:
     from designer.model.measurements import Measurements
 
-    return study.measurements or Measurements(
-        Path("measured.csv"), rope.rope_density_kg_per_m, rope.axial_stiffness_N
-    )
+    if study.measurements is not None:  # of one more session
+        unknown = study.measurements.all_unknown
+        return replace(study.measurements, unknown=unknown, sessions=())
+    return Measurements(Path("measured.csv"), rope.rope_density_kg_per_m, rope.axial_stiffness_N)
 
 
 def _table(plan: Plan, lengths: Lengths) -> str:

@@ -280,6 +280,10 @@ def _bettered(diagnosis: Diagnosis) -> Iterator[Row]:
     for kind, *errors in diagnosis.errors:
         was, now = (kind.scale * error.heldout.value for error in errors)
         yield f"{kind.name} error", f"{was:.3g} → {now:.3g} {kind.unit} on unseen rows"
+    for each in diagnosis.sessions:
+        is_strange = each.session in diagnosis.strange_sessions
+        why = f": {bad('not explained by the machine that others fit')}" * is_strange
+        yield f"  session {each.session}", f"{each.in_words}{why}"
     if diagnosis.not_held:
         yield "  rows not held", escape(f"{diagnosis.not_held}; not counted")
     choices = (("cable before", diagnosis.design_before), ("after", diagnosis.design_after))

@@ -13,6 +13,14 @@ from designer.diagnosis.fit import fit
 from designer.diagnosis.free_poses import FreePredictor, first_poses
 from designer.diagnosis.gauge import in_a_held_frame
 from designer.diagnosis.problem import Predictor, Problem
+from designer.diagnosis.sessions import (
+    GOES_ON,
+    SessionsPredictor,
+    beside_given,
+    goes_on,
+    is_unknown,
+    with_those_of_sessions,
+)
 from designer.diagnosis.statistics import heldout_rows, spread
 from designer.effects.effect import NEEDS, Effect, Setting, as_built, frame_size_m
 from designer.effects.load_step import LEAST_ROWS
@@ -58,6 +66,8 @@ class Case:
     def predictor(self) -> Predictor:
         """Return the model as declared, for these rows."""
         kind = Predictor if self.measured.has_poses else FreePredictor
+        if self.measured.session is not None:
+            kind = SessionsPredictor
         return kind(self.machine, self.measured, self.fixed, self.study.known_effects)
 
     def fault(self, problem: str, expected: str) -> InputError:
@@ -96,34 +106,49 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     # The diagnosis asks no strength of the cable, and only laws of plugins ask its diameter.
     machine = Machine(study.robot.at_rest, measurements.cable(), surroundings=study.surroundings)
     declared = declared_settings(study, machine)
+    of_sessions = [
+        replace(setting, effect=setting.effect.of_session(k))
+        for k in range(1, len(measurements.sessions) + 1)
+        for setting in declared_settings(
+            replace(study, effects=study.effects_of_session(k)), machine
+        )
+    ]
     if not measured.has_poses and np.isnan(measured.poses.position_m).any():
         assert study.workspace is not None  # the config has been checked
         poses = first_poses(as_built(machine, declared), measured, study.workspace.region)
         measured = replace(measured, poses=poses)
-    fixed = [s for s in declared if not s.effect.is_among(measurements.unknown)]
+    fixed = [s for s in (*declared, *of_sessions) if not is_unknown(s.effect, measurements)]
     declared_keys = {setting.effect.key for setting in fixed}
-    effects = [
-        e for e in study.known_effects.of(as_built(machine, declared)) if e.key not in declared_keys
-    ]
+    known = study.known_effects.of(as_built(machine, declared))
+    known = with_those_of_sessions(known, measurements)
+    effects = [e for e in known if e.key not in declared_keys]
     recorded = _recorded(study, measured)
-    if as_built(machine, declared).robot.pulley_radius_m or "pulley_radius" in measurements.unknown:
+    if as_built(machine, declared).robot.pulley_radius_m or (
+        "pulley_radius" in measurements.all_unknown
+    ):
         recorded |= {"pulleys"}
     skipped = {e.key: _missing(e, recorded) or _too_few(e, measured) for e in effects}
+    if measurements.sessions:
+        skipped |= {effect.key: GOES_ON for effect in effects if goes_on(effect)}
     visible = [e for e in effects if not skipped[e.key]]
     given = tuple(
         _as_unknown(_less_known_zero(e, fixed), measurements, machine)
         for e in visible
-        if e.is_among(measurements.unknown)
+        if is_unknown(e, measurements)
     )
     if not measured.has_poses:
         given, note = in_a_held_frame(given, machine.robot, measured)
         measured = replace(measured, notes=(*measured.notes, *note))
     given_keys = {e.key for e in given}
-    beside = [e.beside({e.id for e in given}) for e in visible if e.key not in given_keys]
+    others = [e for e in visible if e.key not in given_keys]
+    beside = [beside_given(e, given, len(measurements.sessions)) for e in others]
     skipped |= {e.key: "is a part of what is unknown" for e in beside if not e.parameters}
     # On the machine an effect acts unseen; only wind has to be told.
     in_sight = [s for s in fixed if s.effect.on_machine is None or "wind" in s.effect.needs]
-    idle = [s for s in in_sight if _missing(s.effect, recorded)]
+    lacking = {s.effect.key: _missing(s.effect, recorded) for s in in_sight}
+    if measurements.sessions:
+        lacking |= {s.effect.key: GOES_ON for s in fixed if goes_on(s.effect)}
+    idle = [s for s in fixed if lacking.get(s.effect.key)]
     return Case(
         study,
         measurements,
@@ -133,10 +158,12 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         given=given,
         skipped=tuple((key, why) for key, why in skipped.items() if why),
         fixed=tuple(s for s in fixed if s not in idle),
-        idle=tuple((s.effect.key, _missing(s.effect, recorded)) for s in idle),
+        idle=tuple((s.effect.key, lacking[s.effect.key]) for s in idle),
     )
 
 
+_FAR_M = 1e6
+"""Rows of different sessions are no neighbours."""
 _UNKNOWN = 10.0
 """How many times as far as a finding that which is unknown may be from the drawing."""
 _OF_FRAME, _MORE_M, _AT_MOST_M = 0.1, 0.1, 3.0
@@ -176,7 +203,7 @@ def _too_few(effect: Effect, measured: Measured) -> str:
     """Return that an effect finds nowhere to start in the rows that a fit may see, if so."""
     if effect.starts_from is None:
         return ""
-    seen = measured.without_readings(heldout_rows(measured.n_rows))
+    seen = measured.without_readings(heldout_rows(measured.n_rows, measured.session))
     starts = effect.starts_from(measured, seen.readings)
     return "" if starts else "needs more rows, or lengths that change more"
 
@@ -268,6 +295,9 @@ def _fast_part(kind: FloatArray, measured: Measured) -> float:
     if seen.sum() < 2:
         return 1.0
     position, kind = measured.poses.position_m[seen], kind[seen]
+    if measured.session is not None:  # each has zeros of its own
+        apart = _FAR_M * measured.session[seen, None]
+        position = np.hstack([position, apart])
     _, nearest = cKDTree(position).query(position, k=2)
     return _robust_std(kind - kind[nearest[:, 1]]) / math.sqrt(2.0)  # of two readings
 

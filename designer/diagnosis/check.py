@@ -150,7 +150,7 @@ class Check:
             yield f"{self.measured.thinned}."
         if origin := self.measured.origin_of_poses:
             yield origin
-        if not self.study.effects:
+        if not self.study.effects and not any(self.study.session_effects):
             yield "The config declares no effects."
         elif not self._betters(self.without):
             yield "The declared effects do not help on these data."
@@ -227,9 +227,9 @@ def check(
 def _check(study: Study, measured: Measured, progress: Callable[[str], None]) -> Check:
     measurements = study.measurements
     assert measurements is not None
-    case = case_of(study, replace(measurements, unknown=()), measured)
+    case = case_of(study, measurements.with_nothing_unknown, measured)
     measured = case.measured  # with poses, where they are estimated
-    bare = case_of(replace(study, effects=()), measurements, measured)
+    bare = case_of(replace(study, effects=(), session_effects=()), measurements, measured)
     everywhere = np.ones(measured.n_rows, dtype=np.bool_)
     predict = case.predictor()
     case.check_held(predict)

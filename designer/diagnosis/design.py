@@ -24,11 +24,23 @@ from designer.workspace.sweep import map_workspace
 
 def declared_by(diagnosis: Diagnosis) -> tuple[DeclaredEffect, ...]:
     """Return the whole model as effects to declare: what was declared, fitted and found."""
+    return _declared(diagnosis, diagnosis.study.effects, None)
+
+
+def declared_of_session(diagnosis: Diagnosis, session: int) -> tuple[DeclaredEffect, ...]:
+    """Return what was declared, fitted and found of one session alone, from 1."""
+    return _declared(diagnosis, diagnosis.study.effects_of_session(session), session)
+
+
+def _declared(
+    diagnosis: Diagnosis, before: Sequence[DeclaredEffect], session: int | None
+) -> tuple[DeclaredEffect, ...]:
     fitted = (
         DeclaredEffect(s.effect.id, s.effect.cable, dict(s.values))
         for s in (*diagnosis.given, *diagnosis.settings)
+        if s.effect.session == session
     )
-    all_of_it = {(e.id, e.cable): e for e in (*diagnosis.study.effects, *fitted)}
+    all_of_it = {(e.id, e.cable): e for e in (*before, *fitted)}
     return tuple(all_of_it.values())
 
 
@@ -45,11 +57,12 @@ def spreads_of(diagnosis: Diagnosis) -> dict[str, float]:
         return {}  # only what one rope on all cables meets is drawn
     stated = study.uncertainty or Uncertainty()
     spreads = {}
-    for fitted in calibration.parameters:
+    of_machine = [each for each in calibration.parameters if each.effect.session is None]
+    for fitted in of_machine:
         if fitted.effect.id == "platform_mass" and stated.payload is None:
             mass_kg = robot.platform.mass_kg + fitted.value
             spreads["payload"] = min(fitted.std / mass_kg, MOST_DEVIATION)
-    points = [each for each in calibration.parameters if each.effect.id == "anchor_offset"]
+    points = [each for each in of_machine if each.effect.id == "anchor_offset"]
     is_whole = len(points) >= robot.exit_points_m.size
     if points and (is_whole or stated.exit_points_m is None):
         squares = sum(fitted.std**2 for fitted in points) / robot.exit_points_m.size
@@ -69,7 +82,9 @@ def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:
         return diagnosis
     selected = _selected(study, grades)
     reaching = [
-        s.effect for s in (*diagnosis.given, *diagnosis.settings) if s.effect.reaches_design
+        s.effect
+        for s in (*diagnosis.given, *diagnosis.settings)
+        if s.effect.reaches_design and s.effect.session is None
     ]
     better = replace(study, effects=declared_by(diagnosis))
     is_other = any(not effect.of_rope for effect in reaching)

@@ -10,7 +10,14 @@ import numpy as np
 from designer.arrays import BoolArray
 from designer.diagnosis.calibration import calibration_of
 from designer.diagnosis.case import Case, case_of, first_noise, rescaled
-from designer.diagnosis.errors_of import Stage, foretell, outliers_of, stage, with_sound_lengths
+from designer.diagnosis.errors_of import (
+    Stage,
+    errors_of_sessions,
+    foretell,
+    outliers_of,
+    stage,
+    with_sound_lengths,
+)
 from designer.diagnosis.events import with_given_up
 from designer.diagnosis.fit import Fit, fit, with_places
 from designer.diagnosis.free_poses import FreePredictor, taken_up
@@ -50,7 +57,8 @@ def diagnose_study(
     """
     measurements = study.measurements
     assert measurements is not None
-    asked_for = {effect.id for effect in study.effects} | set(measurements.unknown)
+    asked_for = {effect.id for effect in study.effects} | set(measurements.all_unknown)
+    asked_for |= {effect.id for own in study.session_effects for effect in own}
     while True:
         try:
             return diagnose(case_of(study, measurements, measured), progress)
@@ -80,7 +88,7 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
 
 def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     measured = case.measured
-    heldout = heldout_rows(measured.n_rows)
+    heldout = heldout_rows(measured.n_rows, measured.session)
     _check_size(case, heldout)
     predict = case.predictor()
     case.check_held(predict)
@@ -136,9 +144,10 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
         foretold_before=foretell(problem, first, compared),
         foretold_after=foretell(problem, last, compared),
         not_tried=progress.left_out,
-        imbalance=imbalance_of(problem.predict.built(last), problem.predict.placed(last)),
+        imbalance=imbalance_of(problem.predict, last),
         predicted_before=problem.predicted(first),
         calibration=calibration_of(outcome.searcher.problem, outcome.fit),
+        sessions=errors_of_sessions(problem, first, last, heldout),
     )
 
 

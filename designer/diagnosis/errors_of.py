@@ -16,6 +16,7 @@ from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.diagnosis.problem import Problem, added_force_N, channel_names
 from designer.diagnosis.statistics import block_of, is_outlier, rms, without_outliers
 from designer.effects.effect import Setting
+from designer.model.measured_data import KINDS, Noise
 from designer.model.robot import Poses
 from designer.statics.forward import solve_forward
 
@@ -111,6 +112,82 @@ def stage(
     return Stage(label, settings, *errors, int((~problem.holds(settings)).sum()))
 
 
+def _before_and_after(errors: tuple[float, float]) -> dict[str, object]:
+    return {"before": errors[0], "after": errors[1]}
+
+
+@dataclass(frozen=True, slots=True)
+class SessionError:
+    """Root mean square errors of one session on rows that no fit has seen, before and after.
+
+    Parameters
+    ----------
+    session : int
+        Its number, from 1.
+    n_rows, n_heldout : int
+        Its rows, and those of them that were held out.
+    length_m, tension_N : (float, float)
+        Before and after [m, N]; NaN where none were measured.
+    """
+
+    session: int
+    n_rows: int = field(metadata={"json": "rows"})
+    n_heldout: int = field(metadata={"json": "heldout"})
+    length_m: tuple[float, float] = field(
+        metadata={"json": lambda e: {"length_m": _before_and_after(e)}}
+    )
+    tension_N: tuple[float, float] = field(
+        metadata={"json": lambda e: {"tension_N": _before_and_after(e)}}
+    )
+
+    @property
+    def in_words(self) -> str:
+        """Return the errors in one line."""
+        errors = [
+            f"{kind.name} {kind.scale * was:.3g} → {kind.scale * now:.3g} {kind.unit}"
+            for kind in KINDS
+            for was, now in [kind.of(self)]
+            if np.isfinite(now)
+        ]
+        return f"{', '.join(errors)} on unseen rows" if errors else "no reading on unseen rows"
+
+    def over(self, noise: Noise) -> float:
+        """Return the error after over the noise, the larger of those of the two kinds."""
+        ratios = [kind.of(self)[1] / kind.of(noise) for kind in KINDS]
+        return max((ratio for ratio in ratios if np.isfinite(ratio)), default=0.0)
+
+
+def errors_of_sessions(
+    problem: Problem, first: Sequence[Setting], last: Sequence[Setting], heldout: BoolArray
+) -> tuple[SessionError, ...]:
+    """Return the errors of each session by two models, outliers of the last not counted."""
+    session = problem.measured.session
+    if session is None:
+        return ()
+    is_sound = ~np.isnan(_sound_in_each(problem.residual(last), session))
+    before, after = (
+        np.where(is_sound, problem.residual(settings), np.nan) * problem.sigma
+        for settings in (first, last)
+    )
+    answer = []
+    for number in np.unique(session).tolist():
+        unseen = heldout & (session == number)
+        kinds = zip(*(np.hsplit(each[unseen], 2) for each in (before, after)), strict=True)
+        lengths, tensions = ((rms(was), rms(now)) for was, now in kinds)
+        count = int((session == number).sum())
+        answer.append(SessionError(number, count, int(unseen.sum()), lengths, tensions))
+    return tuple(answer)
+
+
+def _sound_in_each(residual: FloatArray, session: IntArray) -> FloatArray:
+    """Blank the outliers of each session; a whole session is none, however far it is off."""
+    sound = np.empty_like(residual)
+    for number in np.unique(session):
+        rows = session == number
+        sound[rows] = without_outliers(residual[rows])
+    return sound
+
+
 def outliers_of(residual: FloatArray, row_numbers: IntArray) -> tuple[Outlier, ...]:
     """Name the readings that stand off, in units of noise."""
     names = channel_names(residual.shape[1] // 2)
@@ -204,27 +281,36 @@ def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -
     if not rows.size or not measured.has_poses:
         return None
     true = problem.predict.true_readings(settings, problem.noise)
-    built = problem.predict.built(settings)
-    force = added_force_N(built, measured)
-    poses = problem.predict.placed(settings).poses.part(rows)
-    forward_statics = solve_forward(
-        built.robot,
-        built.cables,
-        true.length_m[rows],
-        poses,
-        None if force is None else force[rows],
-    )
+    placed = problem.predict.placed(settings)
+    tension = np.full(true.tension_N.shape, np.nan)
+    away, turn = np.full((2, measured.n_rows, 1), np.nan)
+    n_solved = 0
+    for of_machine, machine in problem.predict.machines(settings):
+        own = np.flatnonzero(of_machine & chosen)
+        if not own.size:
+            continue
+        force, poses = added_force_N(machine, measured), placed.poses.part(own)
+        forward_statics = solve_forward(
+            machine.robot,
+            machine.cables,
+            true.length_m[own],
+            poses,
+            None if force is None else force[own],
+        )
+        reached = forward_statics.poses
+        n_solved += int(forward_statics.statics.is_solved.sum())
+        away[own, 0] = np.linalg.norm(reached.position_m - poses.position_m, axis=-1)
+        tension[own] = true.tension_N[own] - forward_statics.statics.exit_tension_N
+        if not machine.robot.is_point_mass:
+            turn[own, 0] = _turn_rad(reached, poses)
     block = block_of(len(chosen))[rows]
-    away = np.linalg.norm(forward_statics.poses.position_m - poses.position_m, axis=-1)
-    tension = true.tension_N[rows] - forward_statics.statics.exit_tension_N
+    is_point_mass = problem.predict.machine.robot.is_point_mass
     return Foretold(
         n_rows=rows.size,
-        n_solved=int(forward_statics.statics.is_solved.sum()),
-        position_m=bootstrap(away[:, None], block),
-        turn_rad=None
-        if built.robot.is_point_mass
-        else bootstrap(_turn_rad(forward_statics.poses, poses)[:, None], block),
-        tension_N=None if np.isnan(tension).all() else bootstrap(tension, block),
+        n_solved=n_solved,
+        position_m=bootstrap(away[rows], block),
+        turn_rad=None if is_point_mass else bootstrap(turn[rows], block),
+        tension_N=None if np.isnan(tension).all() else bootstrap(tension[rows], block),
     )
 
 

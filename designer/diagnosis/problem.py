@@ -6,7 +6,7 @@ Of a robot with cables to spare the internal forces of each row are taken from i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -54,17 +54,6 @@ def with_stiff_ends(machine: Machine, statics: Statics) -> Readings:
         span = statics.geometry().horizontal_distance_m
         length = length - straightened_m(machine, tension, span)
     return Readings(length, tension)
-
-
-def imbalance_of(machine: Machine, measured: Measured) -> FloatArray | None:
-    """Return what is out of balance in each row, over the weight (n_rows,).
-
-    None where there are enough cables to balance every pose; see `designer.statics.underactuated`.
-    """
-    if machine.robot.has_enough_cables:
-        return None
-    force = added_force_N(machine, measured)
-    return imbalance(solve_underactuated(machine.robot, measured.poses, machine.cables, force))
 
 
 def added_force_N(machine: Machine, measured: Measured) -> FloatArray | None:
@@ -206,12 +195,16 @@ class Predictor:
         Effects that are declared; with those that are tried they act in the order of ``effects``.
     effects : KnownEffects
         All effects, in the order in which they act.
+    session : int or None
+        The session that the rows are of, from 1, where there are several; effects of others do not
+        act.
     """
 
     machine: Machine
     measured: Measured
     fixed: tuple[Setting, ...] = ()
     effects: KnownEffects = SHIPPED
+    session: int | None = None
     _guesses: dict[Kind, Guess] = field(init=False, default_factory=dict)
     _known: dict[Kind, tuple[Readings, Readings]] = field(init=False, default_factory=dict)
     slopes: KeptSlopes = field(init=False, default_factory=KeptSlopes)
@@ -237,8 +230,15 @@ class Predictor:
         all_settings = (*self.fixed, *settings)
         is_still = self.measured.settled
         return self.effects.in_order(
-            s for s in all_settings if not (is_still and s.effect.needs_motion)
+            s
+            for s in all_settings
+            if s.effect.session in (None, self.session)
+            if not (is_still and s.effect.needs_motion)
         )
+
+    def machines(self, settings: Sequence[Setting]) -> Iterator[tuple[BoolArray, Machine]]:
+        """Yield the machine with the declared effects and these, and its rows (n_rows,)."""
+        yield np.ones(self.measured.n_rows, dtype=np.bool_), self.built(settings)
 
     @property
     def row_unknowns(self) -> int:
@@ -439,6 +439,23 @@ class Problem:
         """Tell which rows (n_rows,) the model can hold, as far as they were read."""
         unheld = np.isnan(self.predicted(settings).stacked) & ~np.isnan(self.measured.readings)
         return np.asarray(~unheld.any(axis=1))
+
+
+def imbalance_of(predict: Predictor, settings: Sequence[Setting]) -> FloatArray | None:
+    """Return what a model leaves out of balance in each row, over the weight (n_rows,).
+
+    None where there are enough cables to balance every pose; see `designer.statics.underactuated`.
+    """
+    if predict.machine.robot.has_enough_cables:
+        return None
+    placed = predict.placed(settings)
+    left = np.full(placed.n_rows, np.nan)
+    for rows, machine in predict.machines(settings):
+        own = placed if rows.all() else placed.part(rows)
+        force = added_force_N(machine, own)
+        statics = solve_underactuated(machine.robot, own.poses, machine.cables, force)
+        left[rows] = imbalance(statics)
+    return left
 
 
 def channel_names(n_cables: int) -> list[str]:

@@ -13,7 +13,7 @@ import numpy as np
 from designer import __version__
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.calibration import Calibration
-from designer.diagnosis.errors_of import Error, Foretold, Outlier, Stage
+from designer.diagnosis.errors_of import Error, Foretold, Outlier, SessionError, Stage
 from designer.diagnosis.search import Proposal, Step
 from designer.diagnosis.structure import Correction, Structure, Whereabouts
 from designer.documents.plain import (
@@ -47,7 +47,7 @@ def _effect(effect: Effect) -> dict[str, object]:
 
 
 def _rivals(keys: Sequence[str]) -> dict[str, object]:
-    ids = dict.fromkeys(key.split(" of cable ")[0] for key in keys)
+    ids = dict.fromkeys(key.split(" of ")[0] for key in keys)
     return {"rivals": list(ids), "rival_keys": keys}
 
 
@@ -241,6 +241,8 @@ class Diagnosis:
         By the model as declared, unknowns fitted.
     calibration : Calibration or None
         How well the data settle what was fitted; None where nothing was.
+    sessions : tuple of SessionError
+        The errors of each session, where there are several.
     """
 
     study: Study
@@ -276,6 +278,14 @@ class Diagnosis:
     mounted_after: Use | None = None
     predicted_before: Readings | None = None
     calibration: Calibration | None = None
+    sessions: tuple[SessionError, ...] = ()
+
+    @property
+    def strange_sessions(self) -> tuple[int, ...]:
+        """Sessions that the model does not explain, while it explains others."""
+        over = {each.session: each.over(self.noise) for each in self.sessions}
+        strange = tuple(number for number, ratio in over.items() if ratio > MOST_SCATTER)
+        return strange if len(strange) < len(over) else ()
 
     @property
     def final(self) -> Stage:
@@ -309,9 +319,12 @@ class Diagnosis:
             for values in (self.measured, self.predicted_before, self.predicted)
             if values is not None
         ]
+        session = self.measured.session
+        of_session = [] if session is None else ["session"]
         lines = (
             [
                 number,
+                *([] if session is None else [int(session[row])]),
                 cable + 1,
                 int(self.heldout[row]),
                 *(finite(float(column[row, cable])) for column in columns),
@@ -319,7 +332,7 @@ class Diagnosis:
             for row, number in enumerate(self.measured.row_numbers.tolist())
             for cable in range(self.machine.robot.n_cables)
         )
-        return csv_text([["row", "cable", "heldout", *heads], *lines])
+        return csv_text([["row", *of_session, "cable", "heldout", *heads], *lines])
 
     @property
     def errors(self) -> Iterator[tuple[ReadingKind, Error, Error]]:
@@ -356,13 +369,16 @@ class Diagnosis:
     def verdict(self) -> DiagnosisVerdict:
         """The answer."""
         if self.findings:
-            is_complete = not (self.is_unexplained or self.is_scattered or self.doubts)
+            is_complete = not (
+                self.is_unexplained or self.is_scattered or self.doubts or self.strange_sessions
+            )
             return DiagnosisVerdict.FOUND if is_complete else DiagnosisVerdict.IN_PART
         if self.is_unexplained:
             return DiagnosisVerdict.UNEXPLAINED
         if self.doubts:
             return DiagnosisVerdict.IMPLAUSIBLE
-        return DiagnosisVerdict.SCATTER if self.is_scattered else DiagnosisVerdict.NOTHING
+        is_off = self.is_scattered or bool(self.strange_sessions)
+        return DiagnosisVerdict.SCATTER if is_off else DiagnosisVerdict.NOTHING
 
     @property
     def moves_poses(self) -> bool:
@@ -402,6 +418,8 @@ class Diagnosis:
                 "heldout": int(self.heldout.sum()),
                 **rows_dict(self.outliers, self.measured),
             },
+            "sessions": self.sessions,
+            "strange_sessions": self.strange_sessions,
             "effects": self.findings,
             "withdrawn": self.withdrawn,
             "left_out": self.study.known_effects.problems,

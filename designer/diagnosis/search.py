@@ -519,4 +519,5 @@ def _measured_at(measured: Measured, positions: FloatArray) -> Measured:
         wind_m_per_s=repeated(measured.wind_m_per_s),
         covariates={},
         row_numbers=np.arange(1, count + 1),
+        session=None,
     )

@@ -94,8 +94,11 @@ def block_of(n_rows: int, n_blocks: int | None = None) -> IntArray:
     return (np.arange(n_rows) * min(blocks, n_rows)) // n_rows
 
 
-def heldout_rows(n_rows: int) -> BoolArray:
-    """Return which rows no fit may see: every fourth block."""
+def heldout_rows(n_rows: int, session: IntArray | None = None) -> BoolArray:
+    """Return which rows no fit may see: every fourth block, of each session (n_rows,) by itself."""
+    if session is not None:
+        counts = np.unique(session, return_counts=True)[1].tolist()
+        return np.concatenate([heldout_rows(count) for count in counts])
     return np.asarray(block_of(n_rows) % _HELD_OUT_EVERY == _HELD_OUT_EVERY - 1)
 
 

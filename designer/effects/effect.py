@@ -177,6 +177,8 @@ ALL_ANCHORS, ALL_ATTACHMENTS = "anchors", "attachments"
 """What ``measurements.unknown`` calls the offsets of all exit points, or attachments, together."""
 OF_CABLE = " of cable "
 """Between an effect's id and the cable, where it concerns only one."""
+OF_SESSION = " of session "
+"""Before the number of the session, where an effect concerns only one."""
 
 MachineChange = Callable[..., Machine]
 """From a machine and `Values` to the machine with the effect."""
@@ -243,6 +245,8 @@ class Effect:
         What ``measurements.unknown`` calls it for all cables together.
     cable : int or None
         The one cable it concerns, from 1, once it is made for a machine.
+    session : int or None
+        The one session of measurements it concerns, from 1; None for all.
     """
 
     id: str
@@ -267,15 +271,18 @@ class Effect:
     shifts_lengths: bool = False
     also_called: str = ""
     cable: int | None = None
+    session: int | None = None
 
     @property
     def key(self) -> str:
-        """Id, with the cable where it concerns only one."""
-        return self.id if self.cable is None else f"{self.id}{OF_CABLE}{self.cable}"
+        """Id, with the cable and the session where it concerns only one."""
+        of_cable = "" if self.cable is None else f"{OF_CABLE}{self.cable}"
+        return f"{self.id}{of_cable}" + (f"{OF_SESSION}{self.session}" if self.session else "")
 
     def identified(self) -> dict[str, object]:
         """Return by what files name it."""
-        return {"id": self.id, "cable": self.cable}
+        of_session = {"session": self.session} if self.session else {}
+        return {"id": self.id, "cable": self.cable, **of_session}
 
     @property
     def neutral(self) -> dict[str, float]:
@@ -327,6 +334,22 @@ class Effect:
             replace(effect._given(cable=k), cable=k, summary=self.summary.format(cable=k))
             for k in range(1, n_cables + 1)
         ]
+
+    def of_session(self, session: int) -> Effect:
+        """Return it for the rows of one session alone."""
+        start = self.starts_from
+
+        def starts_there(measured: Measured, residual: FloatArray) -> Sequence[Values]:
+            assert start is not None
+            rows = np.asarray(measured.session == session)
+            return start(measured.part(rows), residual[rows])
+
+        return replace(
+            self,
+            session=session,
+            summary=f"{self.summary} in session {session}",
+            starts_from=start and starts_there,
+        )
 
     def _given(self, **more: object) -> Effect:
         return replace(

@@ -43,7 +43,12 @@ class KnownEffects:
     def in_order(self, settings: Iterable[Setting]) -> list[Setting]:
         """Return settings in the order in which they act: a model is one, however it was found."""
         place = {effect.id: k for k, effect in enumerate(self.effects)}
-        return sorted(settings, key=lambda s: (place[s.effect.id], s.effect.cable or 0))
+
+        def order(setting: Setting) -> tuple[int, int, int]:
+            effect = setting.effect
+            return place[effect.id], effect.cable or 0, effect.session or 0
+
+        return sorted(settings, key=order)
 
     def without(self, effect_id: str, problem: str) -> KnownEffects:
         """Return all effects but one, with the reason why it is left out."""

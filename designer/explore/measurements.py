@@ -73,9 +73,9 @@ def residuals(question: Question) -> Residuals:
     study = question.study
     measured = read_measured(study)
     assert study.measurements is not None  # else reading has refused
-    declared = replace(study.measurements, unknown=())
+    declared = study.measurements.with_nothing_unknown
     case = case_of(study, declared, measured)
-    bare = case_of(replace(study, effects=()), declared, measured)
+    bare = case_of(replace(study, effects=(), session_effects=()), declared, measured)
     predict = case.predictor()
     everywhere = np.ones(measured.n_rows, dtype=np.bool_)
     noise = first_noise(declared, measured, predict, everywhere)
@@ -98,6 +98,8 @@ def residuals(question: Question) -> Residuals:
 def _covariates(measured: Measured) -> dict[str, FloatArray]:
     """Return everything of a row that a residual may be drawn over."""
     covariates = {"row": measured.row_numbers.astype(np.float64)}
+    if measured.session is not None:
+        covariates["session"] = measured.session.astype(np.float64)
     if measured.time_s is not None:
         covariates["time [s]"] = measured.time_s
     for axis, values in zip("xyz", measured.poses.position_m.T, strict=True):
@@ -166,6 +168,7 @@ def diagnosis_answer(question: Question, progress: Callable[[str], None]) -> Dia
             f"error of {kind.name}: {kind.with_unit(before.heldout.value)} before, "
             f"{kind.with_unit(after.heldout.value)} after, noise {kind.with_unit(kind.noise)}"
             for kind, before, after in quantities(diagnosis)
-        ),
+        )
+        + tuple(f"session {each.session}: {each.in_words}" for each in diagnosis.sessions),
         diagnosed_text=diagnosed_config(diagnosis, question.path.parent, question.text),
     )

@@ -37,6 +37,7 @@ from designer.measured.rows import (
     utc,
 )
 from designer.measured.sense import sense_faults, unit_faults
+from designer.measured.sessions import one_after_the_other
 from designer.measured.table import LogTable
 from designer.model.measured_data import KINDS, Measured
 from designer.model.measurements import Measurements
@@ -63,6 +64,8 @@ def read_measured(study: Study) -> Measured:
     if measurements is None:
         expected = "a mapping with the file of measured data and the cable on the machine"
         raise InputError([study.source.fault("measurements", "is missing", expected)])
+    if measurements.sessions:
+        return _of_sessions(study, measurements)
     tables = [table for path in measurements.files for table in _tables(path, study, measurements)]
     with np.errstate(over="ignore", invalid="ignore"):  # numbers without bounds become faults
         parts = assign(tables, study, measurements)
@@ -101,6 +104,21 @@ def read_measured(study: Study) -> Measured:
     return measured
 
 
+def _of_sessions(study: Study, measurements: Measurements) -> Measured:
+    """Return the rows of all sessions, each read as if there were no other."""
+    parts: list[Measured] = []
+    faults: list[Fault] = []
+    for number in range(1, len(measurements.sessions) + 1):
+        effects = (*study.effects, *study.effects_of_session(number))
+        own = replace(study, measurements=measurements.of_session(number), effects=effects)
+        try:
+            parts.append(read_measured(own))
+        except InputError as error:
+            faults.extend(error.faults)
+    _refuse(faults)
+    return one_after_the_other(parts)
+
+
 def _refuse(faults: list[Fault]) -> None:
     if faults:
         raise InputError(faults[:MOST_FAULTS])
@@ -120,7 +138,7 @@ def _tables(path: Path, study: Study, measurements: Measurements) -> list[LogTab
         with file:
             return [read_table(file, str(path))]
     expected = "a CSV file, relative to this file"
-    raise InputError([study.source.fault("measurements.file", problem, expected)])
+    raise InputError([study.source.fault(measurements.place, problem, expected)])
 
 
 def _poses(assigned: Assigned, mask: BoolArray, *, is_point_mass: bool) -> Poses:

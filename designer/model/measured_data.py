@@ -61,6 +61,8 @@ class Measured:
         Whether poses were measured; else each row's own readings have to tell its pose.
     coordinates : Coordinates or None
         What was measured of those poses, where they were in part.
+    session : array (n_rows,) or None
+        Number of the session of each row, from 1; None where all are of one.
     """
 
     poses: Poses
@@ -77,6 +79,7 @@ class Measured:
     sha256: str = ""
     has_poses: bool = True
     coordinates: Coordinates | None = None
+    session: IntArray | None = None
 
     @property
     def n_rows(self) -> int:
@@ -121,6 +124,25 @@ class Measured:
         """Kinds of surroundings that were recorded: ``time``, ``temperature``, ``wind``."""
         found = {"time": self.time_s, "temperature": self.temperature_C, "wind": self.wind_m_per_s}
         return frozenset(name for name, values in found.items() if values is not None)
+
+    def part(self, rows: BoolArray) -> Measured:
+        """Return some of the rows (n_rows,), of measured poses, as rows of one session."""
+
+        def of(values: FloatArray | None) -> FloatArray | None:
+            return None if values is None else values[rows]
+
+        return replace(
+            self,
+            poses=self.poses.part(np.flatnonzero(rows)),
+            length_m=self.length_m[rows],
+            tension_N=self.tension_N[rows],
+            time_s=of(self.time_s),
+            temperature_C=of(self.temperature_C),
+            wind_m_per_s=of(self.wind_m_per_s),
+            covariates={name: values[rows] for name, values in self.covariates.items()},
+            row_numbers=self.row_numbers[rows],
+            session=None,
+        )
 
     def without_readings(self, rows: BoolArray) -> Measured:
         """Return the same rows, with no reading in some of them (n_rows,)."""

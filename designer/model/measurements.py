@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
 from designer import checked
+from designer.errors import InputError
 from designer.model.cable import Cable
 
 Reading = Literal["length", "tension"]
@@ -36,6 +37,30 @@ class LogColumn:
     scale: float = 1.0
     offset: float = 0.0
     has_unit: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Session:
+    """One of several times at which a machine was measured: its files, and what is its own.
+
+    Parameters
+    ----------
+    file : Path
+        Table of measured poses, lengths and tensions.
+    more_files : tuple of Path
+        Tables of the same rows at other times, which are joined to it.
+    unknown : tuple of str
+        Ids of what is fitted for this session alone.
+    """
+
+    file: Path
+    more_files: tuple[Path, ...] = ()
+    unknown: tuple[str, ...] = ()
+
+    @property
+    def file_names(self) -> str:
+        """What the tables are called, without their folders."""
+        return ", ".join(path.name for path in (self.file, *self.more_files))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +93,11 @@ class Measurements(checked.Value):
     position_noise_m, rotation_noise_rad : float or None
         Standard deviation of a measured coordinate [m] and angle [rad] of poses that are estimated;
         None where such are not used.
+    sessions : tuple of Session
+        Where the machine was measured several times, those, two at least; ``file`` is then that of
+        the first, and all else is of all of them.
+    place : str
+        Where the study names the file.
     diameter_m : float or None
         Diameter of the cable, for effects of plugins that ask for it, and for bending [m].
     minimum_breaking_load_N : float or None
@@ -94,11 +124,51 @@ class Measurements(checked.Value):
     more_files: tuple[Path, ...] = ()
     position_noise_m: checked.Positive | None = None
     rotation_noise_rad: checked.Positive | None = None
+    sessions: tuple[Session, ...] = ()
+    place: str = "measurements.file"
 
     @property
     def files(self) -> tuple[Path, ...]:
         """All tables."""
-        return (self.file, *self.more_files)
+        of_sessions = [path for each in self.sessions for path in (each.file, *each.more_files)]
+        return tuple(of_sessions) or (self.file, *self.more_files)
+
+    def of_file(self, file: Path) -> Measurements:
+        """Return them with other data.
+
+        Raises
+        ------
+        InputError
+            If the data are of several sessions.
+        """
+        if self.sessions:
+            problem = "cannot stand for the files of measurements.sessions"
+            raise InputError.at(file, problem, "a study whose measurements name one file")
+        return replace(self, file=file, more_files=())
+
+    def of_session(self, session: int) -> Measurements:
+        """Return those of one session, from 1, as if there were no other."""
+        own = self.sessions[session - 1]
+        return replace(
+            self,
+            file=own.file,
+            more_files=own.more_files,
+            unknown=(*self.unknown, *own.unknown),
+            sessions=(),
+            place=f"measurements.sessions[{session - 1}].file",
+        )
+
+    @property
+    def with_nothing_unknown(self) -> Measurements:
+        """The same, as if all were known."""
+        sessions = tuple(replace(each, unknown=()) for each in self.sessions)
+        return replace(self, unknown=(), sessions=sessions)
+
+    @property
+    def all_unknown(self) -> tuple[str, ...]:
+        """What is unknown of the machine, and of any session."""
+        every = (*self.unknown, *(name for each in self.sessions for name in each.unknown))
+        return tuple(dict.fromkeys(every))
 
     @property
     def file_names(self) -> str:

@@ -10,13 +10,14 @@ import numpy as np
 from scipy.spatial import QhullError
 
 from designer.arrays import FloatArray
-from designer.documents.document import Data, Document
+from designer.documents.document import Data, Document, Key
 from designer.documents.opened import open_input, reason
 from designer.documents.picture import LARGEST_PICTURE_BYTES, why_not_shown
 from designer.documents.section import reader_of
 from designer.effects.effect import ALL_ATTACHMENTS, OF_CABLE, Effect
 from designer.errors import Fault
 from designer.io.config.columns import ColumnSection
+from designer.io.config.effects import read_effects
 from designer.io.config.robot_checks import AT_MOST, LARGEST, ROBOT_CHECKS, Parts, rank, valid
 from designer.measured.assign import COVARIATE, IGNORE, TIME_NAME, cable_of, is_rotation
 from designer.model.measurements import POSES
@@ -32,6 +33,7 @@ _COLUMNS = "measurements.columns"
 _UNCERTAINTY = "uncertainty"
 _LOGO = "document.logo"
 _UNKNOWN = "measurements.unknown"
+_SESSIONS = "measurements.sessions"
 
 
 def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]:
@@ -54,6 +56,8 @@ def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]
         unknowns_are_known,
         logo_is_a_picture,
         unknown_poses_can_be_told,
+        data_have_a_file,
+        sessions_have_their_own,
     )
     return [fault for check in checks for fault in check(parts)]
 
@@ -381,21 +385,67 @@ def columns_fit_the_robot(parts: Parts) -> Iterator[Fault]:
 
 def unknowns_are_known(parts: Parts) -> Iterator[Fault]:
     """What is fitted from the start is an effect, or all exit points together; each once."""
-    path, seen = _UNKNOWN, set()
+    yield from _unknown_names(parts, _UNKNOWN)
+
+
+def _unknown_names(parts: Parts, path: str, *below: Key) -> Iterator[Fault]:
+    """Yield what is wrong with a list of unknowns, which may stand below a path."""
+    seen: set[str] = set()
     together = [effect.also_called for effect in parts.effects.values() if effect.also_called]
     anchors = parts.raw("robot.anchors")
     cables = range(1, (len(anchors) if isinstance(anchors, list) else 0) + 1)
     by_cable = [effect.id for effect in parts.effects.values() if effect.takes_cable]
     of_cables = [f"{name}{OF_CABLE}{k}" for name in by_cable for k in cables]
     unknowns = (*parts.effects, *together, POSES, *of_cables)
-    for index, name in _texts(parts, path):
+    for index, name in _texts(parts, path, *below):
         if name not in unknowns:
             listed = f"{', '.join((*together, POSES))}, or an effect: {', '.join(parts.effects)}"
             expected = listed + did_you_mean(name, unknowns)
-            yield parts.fault(path, f"{describe(name)} is not known", expected, index)
+            yield parts.fault(path, f"{describe(name)} is not known", expected, *below, index)
         if name in seen:
-            yield parts.fault(path, f"'{name}' is given twice", "once", index)
+            yield parts.fault(path, f"'{name}' is given twice", "once", *below, index)
         seen.add(name)
+
+
+def data_have_a_file(parts: Parts) -> Iterator[Fault]:
+    """Measurements name a file, or sessions with a file each."""
+    data = parts.raw("measurements")
+    if not isinstance(data, dict):
+        return
+    has_file, has_sessions = (data.get(name) is not None for name in ("file", "sessions"))
+    if not has_file and not has_sessions:
+        expected = "the name of a CSV file, or a list of files; or sessions with a file each"
+        yield parts.fault("measurements.file", "is missing", expected)
+    if has_file and has_sessions:
+        yield parts.fault("measurements.file", "there are sessions as well", "one of the two")
+
+
+def sessions_have_their_own(parts: Parts) -> Iterator[Fault]:
+    """What is unknown or known of a session is known to be so, and not of the machine as well."""
+    sessions = parts.raw(_SESSIONS)
+    of_machine = {name for _, name in _texts(parts, _UNKNOWN)}
+    if isinstance(sessions, list) and POSES in of_machine:
+        yield parts.fault(_SESSIONS, f"'{POSES}' are unknown", "measured poses in every session")
+    declared = {effect.id for _, effect in parts.declared.effects}
+    for number, session in enumerate(sessions if isinstance(sessions, list) else ()):
+        yield from _unknown_names(parts, _SESSIONS, number, "unknown")
+        for index, name in _texts(parts, _SESSIONS, number, "unknown"):
+            if name in of_machine or name == POSES:
+                problem = (
+                    f"'{name}' cannot be of a session"
+                    if name == POSES
+                    else (f"'{name}' is unknown of the machine, so of all sessions")
+                )
+                yield parts.fault(_SESSIONS, problem, "another", number, "unknown", index)
+        data = session.get("effects") if isinstance(session, dict) else None
+        place = ("measurements", "sessions", number, "effects")
+        own = read_effects(data, parts.n_cables, parts.effects, place)
+        for flaw in own.flaws:
+            yield parts.document.fault(*flaw)
+        for where, effect in own.effects:
+            if effect.id in declared:
+                problem = f"'{effect.id}' is declared of the machine, so of all sessions"
+                yield parts.document.fault(where, problem, "one of the two")
 
 
 def unknown_poses_can_be_told(parts: Parts) -> Iterator[Fault]:
@@ -417,9 +467,12 @@ def unknown_poses_can_be_told(parts: Parts) -> Iterator[Fault]:
         yield parts.fault("workspace.region", "is missing", expected)
 
 
-def _texts(parts: Parts, path: str) -> Iterator[tuple[int, str]]:
-    """Yield the texts of a list, each with its place."""
+def _texts(parts: Parts, path: str, *below: Key) -> Iterator[tuple[int, str]]:
+    """Yield the texts of a list, which may stand below a path, each with its place."""
     data = parts.raw(path)
+    for key in below:
+        has_key = isinstance(key, int) or (isinstance(data, dict) and key in data)
+        data = data[key] if has_key else None  # type: ignore[index]
     for index, text in enumerate(data if isinstance(data, list) else ()):
         if isinstance(text, str):
             yield index, text

@@ -15,7 +15,7 @@ from designer.spelling import did_you_mean, nearest_name
 from designer.study import DeclaredEffect
 from designer.units import describe
 
-_SECTION = "effects"
+_SECTION: Keys = ("effects",)
 _MOST_LISTED = 8
 """Names of parameters in a message; of more, the first and the last are enough."""
 
@@ -25,6 +25,7 @@ class Found:
     """The effects of a section, each with its place, and all that is wrong."""
 
     n_cables: int
+    section: Keys = _SECTION
     effects: list[tuple[Keys, DeclaredEffect]] = field(default_factory=list)
     flaws: list[Flaw] = field(default_factory=list)
 
@@ -42,22 +43,24 @@ class Found:
             return None
 
 
-def read_effects(data: Data, n_cables: int, effects_by_id: Mapping[str, Effect]) -> Found:
-    """Return what the section ``effects`` says, of all effects that are known by their ids."""
-    declared_effects = Found(n_cables)
+def read_effects(
+    data: Data, n_cables: int, effects_by_id: Mapping[str, Effect], section: Keys = _SECTION
+) -> Found:
+    """Return what a section ``effects`` says, of all effects that are known by their ids."""
+    declared_effects = Found(n_cables, section)
     for effect_id, content in data.items() if isinstance(data, dict) else ():
         effect = effects_by_id.get(effect_id)
         if effect is None:
             problem = f"unknown effect '{printable(effect_id)}'"
             expected = f"one of {', '.join(effects_by_id)}{did_you_mean(effect_id, effects_by_id)}"
-            declared_effects.refuse((_SECTION, effect_id), problem, expected)
+            declared_effects.refuse((*section, effect_id), problem, expected)
         else:
             _read_all(declared_effects, effect, content)
     return declared_effects
 
 
 def _read_all(declared_effects: Found, effect: Effect, data: Data) -> None:
-    place: Keys = (_SECTION, effect.id)
+    place: Keys = (*declared_effects.section, effect.id)
     if not effect.takes_cable or not isinstance(data, list):
         _read_one(declared_effects, effect, place, data)
         return

@@ -44,7 +44,11 @@ def moved_to(folder: Path, text: str, document: Document, start: Path) -> str:
     if folder.resolve() == start.resolve():
         return text
     places: list[tuple[Key, ...]] = [("measurements", "file"), ("document", "logo"), *_TABLES]
-    for listed in (("catalogues",), ("measurements", "file")):
+    sessions = document.root.at(("measurements", "sessions"))
+    count = len(sessions.content) if sessions and isinstance(sessions.content, tuple) else 0
+    of_sessions = [("measurements", "sessions", k, "file") for k in range(count)]
+    places += of_sessions
+    for listed in (("catalogues",), ("measurements", "file"), *of_sessions):
         files = document.root.at(listed)
         count = len(files.content) if files is not None and isinstance(files.content, tuple) else 0
         places += [(*listed, k) for k in range(count)]

@@ -76,6 +76,9 @@ def study_of(
     entries = all_entries(section, document.root)
     declared = read_effects(section.effects, robot.n_cables, known.by_id).effects
     entries += _effect_entries(declared, document.root, known, robot.n_cables)
+    of_sessions = _session_effects(section, robot.n_cables, known)
+    for found in of_sessions:
+        entries += _effect_entries(found, document.root, known, robot.n_cables)
     pose, selection = section.pose, section.selection
     places = places_of(section, document, robot, material)
     if places.motion is not None:
@@ -99,11 +102,24 @@ def study_of(
         measurements=None if measurements is None else measurements.measurements(folder),
         uncertainty=None if uncertainty is None else uncertainty.value(),
         effects=tuple(effect for _, effect in declared),
+        session_effects=tuple(tuple(effect for _, effect in found) for found in of_sessions),
         known_effects=known,
         surroundings=Surroundings(section.surroundings.temperature),
         family=family,
         document=section.document.control(folder),
     )
+
+
+def _session_effects(
+    section: StudySection, n_cables: int, known: KnownEffects
+) -> list[list[tuple[Keys, DeclaredEffect]]]:
+    """Return what is declared of each session of the measurements, each effect with its place."""
+    sessions = section.measurements.sessions if section.measurements else None
+    place: Keys = ("measurements", "sessions")
+    return [
+        read_effects(each.effects, n_cables, known.by_id, (*place, number, "effects")).effects
+        for number, each in enumerate(sessions or ())
+    ]
 
 
 def _material_and_family(

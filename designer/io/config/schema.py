@@ -29,7 +29,7 @@ from designer.io.config.columns import Columns
 from designer.io.config.machine import ConfiguredCable, LoadCaseSection, RobotSection
 from designer.io.config.uncertainty import UncertaintySection
 from designer.model.duty import RUNNING_ROPE, DutyClass
-from designer.model.measurements import LogColumn, Measurements, Reading
+from designer.model.measurements import LogColumn, Measurements, Reading, Session
 from designer.model.motion import Ends
 from designer.model.region import Region, Sampling
 from designer.model.robot import Poses
@@ -327,12 +327,39 @@ class PlausibleSection(Section):
     at most 3 m."""
 
 
+class SessionSection(Section):
+    """One of several times at which the machine was measured."""
+
+    file: Files = config_field(expected="the name of a CSV file, or a list of files")
+    """The table of this session, as `measurements.file`."""
+    unknown: Names = ()
+    """Effects that are fitted for this session alone, as in `measurements.unknown`."""
+    effects: fields.FreeMapping = Field(default_factory=dict)
+    """What is known of this session alone, as `effects` of the machine; `designer diagnose` writes
+    here what it finds."""
+
+    def session(self, folder: Path) -> Session:
+        """Return its files, from this folder, and what is unknown of it."""
+        files = (self.file,) if isinstance(self.file, str) else self.file
+        paths = [folder / name for name in files]
+        return Session(paths[0], tuple(paths[1:]), self.unknown)
+
+
+Sessions = Annotated[
+    tuple[SessionSection, ...],
+    fields.list_of(2, 50, "a list of 2 to 50 sessions such as [{file: monday.csv}, …]"),
+]
+
+
 class MeasurementsSection(Section):
     """Data measured on the built machine."""
 
-    file: Files = config_field(expected="the name of a CSV file, or a list of files")
+    file: Files | None = config_field("File")
     """The table, relative to this file: CSV, Excel, Parquet or a bag of ROS; several are joined by
     their times."""
+    sessions: Sessions | None = config_field("Sessions")
+    """In place of `file`, for a machine that was measured several times: each has a file, and
+    may have unknowns and effects of its own; all else here is of all of them."""
     columns: Columns = Field(default_factory=dict)
     """What the file's columns are, where their names are not ours."""
     settled: StrictBool = True
@@ -352,10 +379,15 @@ class MeasurementsSection(Section):
 
     def measurements(self, folder: Path) -> Measurements:
         """Return what was measured, with its files from this folder."""
-        files = (self.file,) if isinstance(self.file, str) else self.file
+        sessions = tuple(each.session(folder) for each in self.sessions or ())
+        given = (self.file,) if isinstance(self.file, str) else self.file
+        files = [folder / name for name in given or ()]
+        if sessions:
+            files = [sessions[0].file, *sessions[0].more_files]
         return Measurements(
-            file=folder / files[0],
-            more_files=tuple(folder / name for name in files[1:]),
+            file=files[0],
+            more_files=tuple(files[1:]),
+            sessions=sessions,
             linear_density_kg_per_m=self.cable.linear_mass,
             axial_stiffness_N=self.cable.axial_stiffness,
             diameter_m=self.cable.diameter,

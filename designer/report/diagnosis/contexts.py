@@ -101,6 +101,9 @@ def found(diagnosis: Diagnosis) -> Context | None:
     return {} if diagnosis.findings or diagnosis.withdrawn else None
 
 
+_WHEN = ("before", "after")
+
+
 def errors(diagnosis: Diagnosis) -> Context:
     """The errors at each stage."""
     before, after = diagnosis.foretold_before, diagnosis.foretold_after
@@ -120,7 +123,24 @@ def errors(diagnosis: Diagnosis) -> Context:
         unsolved = max(stage.n_rows - stage.n_solved for stage in (before, after))
     n_cables = diagnosis.machine.robot.n_cables
     prefix = "Cable " if n_cables < 5 else ""
+    shown = [quantity for quantity, *_ in quantities(diagnosis)]
+    files = diagnosis.study.measurements.sessions if diagnosis.study.measurements else ()
     return {
+        "session_heads": [
+            "Session",
+            "File",
+            ("Rows", ""),
+            *((f"{q.name.capitalize()} {when} [{q.unit}]", "") for q in shown for when in _WHEN),
+        ],
+        "sessions": [
+            [
+                str(each.session),
+                files[each.session - 1].file_names if files else "",
+                str(each.n_rows),
+                *(q.shown(error) for q in shown for error in getattr(each, q.field)),
+            ]
+            for each in diagnosis.sessions
+        ],
         "foretold": foretold,
         "unsolved": unsolved,
         "cable_heads": [(f"{prefix}{k}", "") for k in range(1, n_cables + 1)],

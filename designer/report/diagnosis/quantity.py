@@ -24,6 +24,11 @@ class Quantity:
     scale: float
     noise: float
 
+    @property
+    def field(self) -> str:
+        """What results call it."""
+        return "length_m" if self.name == "length" else "tension_N"
+
     def error_of(self, stage: Stage) -> Error | None:
         """Return its error at a stage; None where it was not measured."""
         return stage.length_m if self.name == "length" else stage.tension_N

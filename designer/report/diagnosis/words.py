@@ -11,7 +11,7 @@ from designer.diagnosis.calibration import Calibrated
 from designer.diagnosis.errors_of import Interval
 from designer.diagnosis.result import Estimate, Finding
 from designer.diagnosis.search import EffectTrial
-from designer.effects.effect import Effect, Parameter
+from designer.effects.effect import OF_SESSION, Effect, Parameter
 from designer.report import format as fmt
 from designer.spelling import in_runs
 
@@ -55,14 +55,15 @@ def plain(effect: Effect, values: Mapping[str, float]) -> str:
     if effect.id not in _DIRECTIONS:
         return effect.summary
     name, text, more, less = _DIRECTIONS[effect.id]
-    return text.format(more if values[name] > effect.neutral[name] else less)
+    text = text.format(more if values[name] > effect.neutral[name] else less)
+    return f"{text} in session {effect.session}" if effect.session else text
 
 
 def grouped(findings: Iterable[Finding]) -> list[tuple[Finding, ...]]:
     """Return findings with those of one kind drawn together, by cable."""
-    kinds: dict[str, list[Finding]] = {}
+    kinds: dict[tuple[str, int | None], list[Finding]] = {}
     for finding in findings:
-        kinds.setdefault(finding.effect.id, []).append(finding)
+        kinds.setdefault((finding.effect.id, finding.effect.session), []).append(finding)
     return [tuple(sorted(kind, key=lambda f: f.effect.cable or 0)) for kind in kinds.values()]
 
 
@@ -72,6 +73,7 @@ def plain_group(group: Sequence[Finding]) -> str:
     if len(group) == 1 or first.id not in _OF_SEVERAL:
         return fmt.listing(plain_finding(finding) for finding in group)
     text = _OF_SEVERAL[first.id].format(_cables(group))
+    text += f" in session {first.session}" if first.session else ""
     if first.id == "anchor_offset":
         moved = [moved_m(finding) for finding in group]
         text += f", by {_short(1e3 * min(moved))} to {_short(1e3 * max(moved))}{NO_BREAK}mm"
@@ -80,7 +82,9 @@ def plain_group(group: Sequence[Finding]) -> str:
 
 def key_of(group: Sequence[Finding]) -> str:
     """Return id and cables of findings of one kind."""
-    return group[0].effect.key if len(group) == 1 else f"{group[0].effect.id} of {_cables(group)}"
+    first = group[0].effect
+    of_session = f"{OF_SESSION}{first.session}" if first.session else ""
+    return first.key if len(group) == 1 else f"{first.id} of {_cables(group)}{of_session}"
 
 
 def moved_m(finding: Finding) -> float:
