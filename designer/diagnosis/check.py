@@ -195,6 +195,7 @@ class Check:
                 "stands": self.is_positive,
             },
             "effects": result.effects_table(self.study.effects),
+            "session_effects": [result.effects_table(own) for own in self.study.session_effects],
             "idle": result.reasons(self.idle),
             "unexplained": result.structure_dict(self.structure),
             "noise": self.noise,
