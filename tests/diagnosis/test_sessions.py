@@ -16,6 +16,7 @@ from designer.diagnosis.result import Diagnosis
 from designer.io.config import read_study
 from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
+from designer.report.diagnosis.report import verdict
 
 OWN = ["pose_frame", "length_offset"]
 RADIUS_M = 0.12
@@ -59,7 +60,7 @@ def diagnosed(path: Path) -> Diagnosis:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [71])
+@pytest.mark.parametrize("seed", [71, 72])
 def test_shared_effect_is_found_among_days_of_their_own_frame_and_homing(
     tmp_path: Path, seed: int
 ) -> None:
@@ -125,3 +126,7 @@ def test_session_of_another_machine_is_told(tmp_path: Path) -> None:
     days = [make(YARD3, {}, rows=48, seed=821), make(YARD3, factors, rows=48, seed=822)]
     diagnosis = diagnosed(write(tmp_path, days, []))
     assert not diagnosis.is_positive
+    assert diagnosis.strange_sessions == (2,)
+    assert (
+        "Session 2 is not explained by the machine that the others fit" in verdict(diagnosis).text
+    )

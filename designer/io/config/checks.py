@@ -127,7 +127,7 @@ def _places(parts: Parts, middle: FloatArray) -> Iterator[tuple[str, FloatArray]
 def catalogues_exist(parts: Parts) -> Iterator[Fault]:
     """Each extra catalogue is a file or folder beside the config."""
     folder = Path(parts.document.name).parent
-    for index, name in _texts(parts, "catalogues"):
+    for index, name in _texts(parts.raw("catalogues")):
         with suppress(OSError):  # such as a name longer than the file system takes
             if (folder / name).exists():
                 continue
@@ -385,11 +385,11 @@ def columns_fit_the_robot(parts: Parts) -> Iterator[Fault]:
 
 def unknowns_are_known(parts: Parts) -> Iterator[Fault]:
     """What is fitted from the start is an effect, or all exit points together; each once."""
-    yield from _unknown_names(parts, _UNKNOWN)
+    yield from _unknown_names(parts, parts.raw(_UNKNOWN), _UNKNOWN)
 
 
-def _unknown_names(parts: Parts, path: str, *below: Key) -> Iterator[Fault]:
-    """Yield what is wrong with a list of unknowns, which may stand below a path."""
+def _unknown_names(parts: Parts, names: Data, path: str, *below: Key) -> Iterator[Fault]:
+    """Yield what is wrong with a list of unknowns at a path, or below it."""
     seen: set[str] = set()
     together = [effect.also_called for effect in parts.effects.values() if effect.also_called]
     anchors = parts.raw("robot.anchors")
@@ -397,7 +397,7 @@ def _unknown_names(parts: Parts, path: str, *below: Key) -> Iterator[Fault]:
     by_cable = [effect.id for effect in parts.effects.values() if effect.takes_cable]
     of_cables = [f"{name}{OF_CABLE}{k}" for name in by_cable for k in cables]
     unknowns = (*parts.effects, *together, POSES, *of_cables)
-    for index, name in _texts(parts, path, *below):
+    for index, name in _texts(names):
         if name not in unknowns:
             listed = f"{', '.join((*together, POSES))}, or an effect: {', '.join(parts.effects)}"
             expected = listed + did_you_mean(name, unknowns)
@@ -423,23 +423,23 @@ def data_have_a_file(parts: Parts) -> Iterator[Fault]:
 def sessions_have_their_own(parts: Parts) -> Iterator[Fault]:
     """What is unknown or known of a session is known to be so, and not of the machine as well."""
     sessions = parts.raw(_SESSIONS)
-    of_machine = {name for _, name in _texts(parts, _UNKNOWN)}
-    if isinstance(sessions, list) and POSES in of_machine:
+    if not isinstance(sessions, list):
+        return
+    of_machine = {name for _, name in _texts(parts.raw(_UNKNOWN))}
+    if POSES in of_machine:
         yield parts.fault(_SESSIONS, f"'{POSES}' are unknown", "measured poses in every session")
     declared = {effect.id for _, effect in parts.declared.effects}
-    for number, session in enumerate(sessions if isinstance(sessions, list) else ()):
-        yield from _unknown_names(parts, _SESSIONS, number, "unknown")
-        for index, name in _texts(parts, _SESSIONS, number, "unknown"):
+    for number, session in enumerate(sessions):
+        if not isinstance(session, dict):
+            continue
+        unknown, place = session.get("unknown"), ("measurements", "sessions", number, "effects")
+        yield from _unknown_names(parts, unknown, _SESSIONS, number, "unknown")
+        for index, name in _texts(unknown):
+            why = "cannot be" if name == POSES else "is unknown of the machine, so cannot be"
             if name in of_machine or name == POSES:
-                problem = (
-                    f"'{name}' cannot be of a session"
-                    if name == POSES
-                    else (f"'{name}' is unknown of the machine, so of all sessions")
-                )
+                problem = f"'{name}' {why} of a session"
                 yield parts.fault(_SESSIONS, problem, "another", number, "unknown", index)
-        data = session.get("effects") if isinstance(session, dict) else None
-        place = ("measurements", "sessions", number, "effects")
-        own = read_effects(data, parts.n_cables, parts.effects, place)
+        own = read_effects(session.get("effects"), parts.n_cables, parts.effects, place)
         for flaw in own.flaws:
             yield parts.document.fault(*flaw)
         for where, effect in own.effects:
@@ -450,7 +450,7 @@ def sessions_have_their_own(parts: Parts) -> Iterator[Fault]:
 
 def unknown_poses_can_be_told(parts: Parts) -> Iterator[Fault]:
     """Where poses are unknown, attachments and the vertical are not."""
-    unknown = {name: index for index, name in _texts(parts, _UNKNOWN)}
+    unknown = {name: index for index, name in _texts(parts.raw(_UNKNOWN))}
     if POSES not in unknown:
         for name in ("position", "rotation"):
             if parts.raw(f"measurements.noise.{name}") is not None:
@@ -467,12 +467,8 @@ def unknown_poses_can_be_told(parts: Parts) -> Iterator[Fault]:
         yield parts.fault("workspace.region", "is missing", expected)
 
 
-def _texts(parts: Parts, path: str, *below: Key) -> Iterator[tuple[int, str]]:
-    """Yield the texts of a list, which may stand below a path, each with its place."""
-    data = parts.raw(path)
-    for key in below:
-        has_key = isinstance(key, int) or (isinstance(data, dict) and key in data)
-        data = data[key] if has_key else None  # type: ignore[index]
+def _texts(data: Data) -> Iterator[tuple[int, str]]:
+    """Yield the texts of a list, each with its place."""
     for index, text in enumerate(data if isinstance(data, list) else ()):
         if isinstance(text, str):
             yield index, text

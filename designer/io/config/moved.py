@@ -44,14 +44,11 @@ def moved_to(folder: Path, text: str, document: Document, start: Path) -> str:
     if folder.resolve() == start.resolve():
         return text
     places: list[tuple[Key, ...]] = [("measurements", "file"), ("document", "logo"), *_TABLES]
-    sessions = document.root.at(("measurements", "sessions"))
-    count = len(sessions.content) if sessions and isinstance(sessions.content, tuple) else 0
-    of_sessions = [("measurements", "sessions", k, "file") for k in range(count)]
+    sessions = _items(document, ("measurements", "sessions"))
+    of_sessions = [(*session, "file") for session in sessions]
     places += of_sessions
     for listed in (("catalogues",), ("measurements", "file"), *of_sessions):
-        files = document.root.at(listed)
-        count = len(files.content) if files is not None and isinstance(files.content, tuple) else 0
-        places += [(*listed, k) for k in range(count)]
+        places += _items(document, listed)
     for keys in places:
         node = document.root.at(keys)
         name = None if node is None else node.data()
@@ -73,3 +70,10 @@ def path_from(folder: Path, path: Path) -> str:
         return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
     except ValueError:  # on another drive
         return path.resolve().as_posix()
+
+
+def _items(document: Document, listed: tuple[Key, ...]) -> list[tuple[Key, ...]]:
+    """Return the places of a list's items; none where there is no list."""
+    node = document.root.at(listed)
+    count = len(node.content) if node is not None and isinstance(node.content, tuple) else 0
+    return [(*listed, k) for k in range(count)]
