@@ -51,6 +51,11 @@ class PointList(region.Region):
     def samples_m(self, count: int, sampling: region.Sampling, seed: int) -> Iterator[FloatArray]:
         return region.in_chunks(self.points_m)
 
+    def thinned(self, most: int) -> PointList:
+        count = len(self.points_m)
+        every = np.linspace(0, count - 1, min(most, count)).astype(int)
+        return PointList(self.points_m[every])
+
     def inside_m(self, rng: np.random.Generator, count: int) -> FloatArray:
         return self.points_m[rng.integers(len(self.points_m), size=count)]
 

@@ -113,6 +113,10 @@ class Region(checked.Value, ABC):
         A list of points is taken whole.
         """
 
+    def thinned(self, most: int) -> Region:
+        """Return a list of at most so many of its points, evenly drawn; any other region whole."""
+        return self
+
     @abstractmethod
     def inside_m(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Return random positions (count, 3) [m]."""

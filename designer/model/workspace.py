@@ -92,6 +92,12 @@ class Workspace(checked.Value):
         """
         return map(self.space.places, self.positions_m())
 
+    def hurried(self, most: int) -> Workspace:
+        """Return the same with so many samples at most, which of a list are points of it."""
+        if self.sample_count <= most:
+            return self
+        return replace(self, samples=most, region=self.region.thinned(most))
+
     def thinned(self, most: int) -> FloatArray:
         """Return about `most` places (n, n_coordinates), fairly drawn from all samples [m, rad].
 

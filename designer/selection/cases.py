@@ -34,7 +34,7 @@ from designer.workspace.refine import LIGHT, refine_over_branches
 
 _MOST_SAMPLES = 256
 """Poses in which lengths are kept, for the chosen one."""
-FEW_AT_FIRST = 300
+FEW_AT_FIRST = 128
 """Samples that candidates are tried at first where all of them take long."""
 _CLOSE = 0.95
 """Of the utilisation that governs: from where on other cases and directions are searched, too."""
@@ -203,12 +203,12 @@ class Cases:
         workspace = whole_workspace = self.workspace.of_case(case)
         keeps = any(candidate.keeps_lengths for candidate in loaded)
         if self.few is not None and not keeps:
-            workspace = replace(workspace, samples=min(self.few, workspace.samples))
+            workspace = workspace.hurried(self.few)
         shares = bool(loaded) and not case.changes_robot and not keeps
         solved = sampled_at_tension(loaded, workspace, progress)
         if not shares:
             progress(self.sample_count)
-        is_whole = workspace.samples == whole_workspace.samples
+        is_whole = workspace is whole_workspace
         for candidate, sampled in solved:
             verification = sampled.verification(candidate.cable)
             yield CaseResult(whole_workspace, candidate, sampled, verification, is_whole=is_whole)

@@ -6,16 +6,20 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from designer.arrays import IntArray, require_shape
+from designer.arrays import BoolArray, IntArray, require_shape
 from designer.kernel.calling import Meets, plain, share_out
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
 from designer.progress import checkpoint
 from designer.statics.geometry import upright_exit_points_m, upright_situation
-from designer.statics.inverse import solve_sagging
+from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.shape import sag_ratio
+from designer.statics.task import LONG
 
 _SHARE = 64
 """Sizes that one thread takes at a time; the first of them starts without a neighbour."""
+
+_SAME = 1e-9
 
 
 def is_quick(robot: Robot) -> bool:
@@ -100,8 +104,8 @@ def add_slowly(
 ) -> None:
     """Solve poses one cable at a time, the hard ones with more patience, and add what they meet.
 
-    Other branches, which take a hundred times as long, are tried of a robot that `meet` solves
-    quickly only where the first is overloaded: `meet` tries none either.
+    Other branches, which take a hundred times as long, are tried only where the first does not
+    serve: where it is overloaded, or exceeds the largest sag, or hangs.
 
     Parameters
     ----------
@@ -112,18 +116,23 @@ def add_slowly(
     """
     at = np.arange(len(poses.position_m)) if indices is None else indices
     part = poses.part(at)
-    statics = solve_sagging(robot, part, cable, seeks_better=not is_quick(robot))
-    if is_quick(robot) and (statics.largest_tension_N > cable.allowable_tension_N).any():
-        statics = solve_sagging(robot, part, cable)
-    meets.failed[row, at] = ~statics.is_solved
-    left_out = statics.hangs_below & statics.is_solved & leaves_out_hanging
-    counts = statics.is_solved & ~left_out
-    used = statics.largest_tension_N[counts] / cable.allowable_tension_N
+    statics = solve_sagging(robot, part, cable, seeks_better=False)
+    is_solved, tension_N = statics.is_solved, statics.largest_tension_N
+    hangs, length_m = statics.hangs_below, statics.length_m
+    again = np.flatnonzero(_may_serve_better(statics, cable, leaves_out_hanging))
+    if len(again):
+        better = solve_sagging(robot, part.part(again), cable)
+        is_solved[again], tension_N[again] = better.is_solved, better.largest_tension_N
+        hangs[again], length_m[again] = better.hangs_below, better.length_m
+    meets.failed[row, at] = ~is_solved
+    left_out = hangs & is_solved & leaves_out_hanging
+    counts = is_solved & ~left_out
+    used = tension_N[counts] / cable.allowable_tension_N
     meets.left_out[row] += int(left_out.sum())
     meets.counted[row] += len(used)
     meets.overloaded[row] += int((used > 1.0).sum())
     meets.longest_m[row] = np.maximum(
-        meets.longest_m[row], statics.length_m[counts].max(axis=0, initial=0.0)
+        meets.longest_m[row], length_m[counts].max(axis=0, initial=0.0)
     )
     # In ascending order the last of each cell, which is its largest, is what stays.
     order = np.argsort(used, kind="stable")
@@ -134,3 +143,26 @@ def add_slowly(
     higher = best > meets.utilisation[row]
     meets.utilisation[row, higher] = best[higher]
     meets.pose[row, higher] = where[higher]
+
+
+def _may_serve_better(statics: Statics, cable: Cable, leaves_out_hanging: bool) -> BoolArray:
+    """Tell in which poses (n,) another branch is to be tried, as this one does not serve.
+
+    A cable that exceeds the largest sag in the branches of one pose does not serve, whatever
+    those of other poses are: the pose where it hangs lowest is tried before them.
+    """
+    robot, poses = statics.robot, statics.poses
+    doubtful = statics.largest_tension_N > cable.allowable_tension_N
+    if leaves_out_hanging:
+        doubtful |= statics.hangs_below
+    if not robot.is_redundant or robot.sag_max is None:
+        return np.asarray(doubtful | (statics.length_over_chord > LONG).any(axis=-1))
+    doubtful |= ~statics.is_solved
+    excess = sag_ratio(statics).max(axis=-1) / robot.sag_max
+    hangs = excess > 1.0 + _SAME
+    if hangs.any():
+        lowest = np.array([np.nanargmax(excess)])
+        sag = sag_ratio(solve_sagging(robot, poses.part(lowest), cable))
+        if (sag <= robot.sag_max * (1.0 + _SAME)).all():
+            doubtful |= hangs
+    return doubtful

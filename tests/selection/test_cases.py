@@ -18,6 +18,7 @@ from designer.model.cable import Cable
 from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
+from designer.model.region import Region
 from designer.model.robot import Poses
 from designer.model.workspace import Workspace
 from designer.resources import example_file
@@ -108,10 +109,16 @@ def twin_tension_N(study: Study, found: CaseResult) -> FloatArray:
     return tensions_N(pull, length[others], load.q)
 
 
+BOX = Prism.box((20, 70), (20, 60), (-30, -8))
+
+
 @pytest.mark.slow
-def test_few_samples_at_first_change_no_figure_of_what_is_searched() -> None:
+@pytest.mark.parametrize(
+    "region", [BOX, PointList(np.concatenate([*BOX.samples_m(40, "low_discrepancy", 3)]))]
+)
+def test_few_samples_at_first_change_no_figure_of_what_is_searched(region: Region) -> None:
     robot = replace(FOUR, platform=replace(FOUR.platform, drag_area_m2=2.0))
-    workspace = Workspace(Prism.box((20, 70), (20, 60), (-30, -8)), samples=40)
+    workspace = Workspace(region, samples=40)
     each = LoadCase("static"), LoadCase("wind", wind=Wind(15.0, 1.2, count=2))
     cases = Cases(robot, workspace, each)
     thin, thick = (Cable(d, 5000.0 * d**2, 5e10 * d**2, 6e8 * d**2) for d in (0.004, 0.01))
@@ -127,7 +134,7 @@ def test_few_samples_at_first_change_no_figure_of_what_is_searched() -> None:
 
 
 def test_only_slow_robots_with_several_cases_hurry() -> None:
-    workspace = Workspace(Prism.box((20, 70), (20, 60), (-30, -8)))
+    workspace = Workspace(BOX)
     three = replace(FOUR, exit_points_m=FOUR.exit_points_m[:3])
     both = LoadCase("static"), LoadCase("hoisting", dynamic_factor=1.3)
     assert Cases(FOUR, workspace, both).hurried().few is not None

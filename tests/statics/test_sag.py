@@ -23,6 +23,7 @@ from designer.sizing.scp import size_by_scp
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import solve_sagging
 from designer.statics.shape import sag_ratio
+from designer.statics.sizes import meet
 
 
 @numba.njit
@@ -182,3 +183,20 @@ def test_what_no_internal_forces_keep_is_solved_without_and_exceeds_it() -> None
         found.verdict == Verdict.SOLVED,
         solve_sagging(replace(light, sag_max=None), poses, cable).is_solved,
     )
+
+
+@pytest.mark.parametrize("diameter_m", [0.004, 0.01, 0.04])
+def test_what_a_size_meets_is_what_its_poses_meet(diameter_m: float) -> None:
+    """Other branches are tried where one does not serve: thin, fitting and hopelessly heavy."""
+    robot = replace(FOUR, sag_max=0.05)
+    poses, cable = four_poses(200, 5), steel(2.0).cable(diameter_m)
+    statics = solve_sagging(robot, poses, cable)
+    keeps = (sag_ratio(statics) <= 0.05 * (1.0 + 1e-9)).all(axis=1)
+    cells = (~keeps).astype(int)
+    meets = meet(robot, poses, [cable], cells, 2, leaves_out_hanging=False)
+    assert meets.counted[0] == statics.is_solved.sum()
+    assert not meets.failed[0][statics.is_solved].any()
+    if keeps.any():
+        used = statics.largest_tension_N / cable.allowable_tension_N
+        assert meets.utilisation[0, 0] == pytest.approx(used[keeps].max(), rel=1e-9)
+        assert meets.overloaded[0] == (used > 1.0).sum()
