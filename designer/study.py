@@ -20,6 +20,7 @@ from designer.model.load_case import EACH, LoadCase
 from designer.model.machine import TEMPERATE, Machine, Surroundings
 from designer.model.measurements import Measurements
 from designer.model.robot import Poses, Robot
+from designer.model.rope_life import RopeLife
 from designer.model.uncertainty import Uncertainty
 from designer.model.workspace import Workspace
 
@@ -102,6 +103,8 @@ class Selection:
         What the chosen rope is checked against beyond its strength.
     duty_class : str
         Mechanism group, which gives the safety factor of running ropes; ``none`` for none.
+    rope_life : RopeLife or None
+        How many bends ropes bear, and how many they shall.
     """
 
     grades: tuple[str, ...] | None = None
@@ -113,6 +116,7 @@ class Selection:
     max_distinct_products: checked.Count | None = None
     limits: RopeLimits = field(default_factory=RopeLimits)
     duty_class: DutyClass = "none"
+    rope_life: RopeLife | None = None
 
     def __post_init__(self) -> None:
         checked.check_fields(self)

@@ -21,150 +21,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from designer.analysis.bending import CableBending, bending_of, life_requirements
+from designer.analysis.path_case import PathCase
 from designer.analysis.requirements import design_loads
-from designer.arrays import FloatArray
 from designer.documents.plain import Json, csv_text
 from designer.measured.assign import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.model.load_case import Loaded
 from designer.model.motion import Motion
 from designer.model.requirement import Requirement, State
 from designer.model.robot import Poses
+from designer.model.rope_life import RopeLife
 from designer.model.verdict import Verdict
-from designer.model.winches import Winches
-from designer.selection.criteria import rope_diameter_m
-from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.inverse import solve_sagging
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
 
 _SOURCE = "along workspace.path, at its instants"
-
-
-@dataclass(frozen=True, eq=False)
-class PathCase:
-    """A load case along the path, in one direction of its loads.
-
-    Parameters
-    ----------
-    loaded : Loaded
-        Robot and cables under its loads.
-    motion : Motion
-        The instants (n_instants,).
-    statics : Statics
-        Their equilibria (n_instants,).
-    """
-
-    loaded: Loaded
-    motion: Motion
-    statics: Statics
-
-    @property
-    def name(self) -> str:
-        """Of the load case."""
-        return self.loaded.case.name
-
-    @property
-    def is_held(self) -> bool:
-        """Whether every instant is solved: else speeds are not known."""
-        return bool(self.statics.is_solved.all())
-
-    @property
-    def winches(self) -> Winches:
-        """What pulls."""
-        return self.statics.robot.winches
-
-    @cached_property
-    def tension_N(self) -> FloatArray:
-        """At the exit points (n_instants, n_cables) [N]."""
-        return self.statics.exit_tension_N
-
-    @cached_property
-    def speed_m_per_s(self) -> FloatArray:
-        """Of the unstrained lengths, positive paying out (n_instants, n_cables) [m/s]."""
-        length_m, time_s = self.statics.length_m, self.motion.time_s
-        return np.asarray(np.gradient(length_m, time_s, axis=0, edge_order=2))
-
-    @cached_property
-    def power_W(self) -> FloatArray:
-        """Of each motor, negative where the load drives it (n_instants, n_cables) [W]."""
-        strain = self.tension_N / self.statics.axial_stiffness_N
-        given = -self.tension_N * (1.0 + 0.5 * strain) * self.speed_m_per_s
-        efficiency = self.winches.efficiency
-        return np.where(given > 0.0, given / efficiency, given * efficiency)
-
-    @cached_property
-    def torque_Nm(self) -> FloatArray | None:
-        """Of each motor, rope in the outermost layer (n_instants, n_cables) [N·m].
-
-        None where no drum is given.
-        """
-        winches = self.winches
-        if winches.drum_diameter_m is None:
-            return None
-        torque = winches.torque_Nm(self.tension_N, rope_diameter_m(self.loaded.cable))
-        driven = self.speed_m_per_s > 0.0
-        return np.where(driven, torque * winches.efficiency**2, torque)
-
-    @cached_property
-    def motor_speed_rad_per_s(self) -> FloatArray | None:
-        """Of each motor, rope in the innermost layer (n_instants, n_cables) [rad/s]."""
-        winches = self.winches
-        if winches.drum_diameter_m is None:
-            return None
-        radius = 0.5 * (winches.drum_diameter_m + rope_diameter_m(self.loaded.cable))
-        return np.asarray(self.speed_m_per_s * winches.gear_ratio / radius)
-
-    @cached_property
-    def energy_J(self) -> tuple[FloatArray, FloatArray]:
-        """What each motor draws and what comes back to it, each (n_cables,) [J]."""
-        drawn, back = (np.maximum(sign * self.power_W, 0.0) for sign in (1.0, -1.0))
-        time_s = self.motion.time_s
-        return np.trapezoid(drawn, time_s, axis=0), np.trapezoid(back, time_s, axis=0)
-
-    @cached_property
-    def rms_torque_Nm(self) -> FloatArray | None:
-        """Root mean square over the path of each motor's torque (n_cables,) [N·m]."""
-        if self.torque_Nm is None:
-            return None
-        time_s = self.motion.time_s
-        mean = np.trapezoid(self.torque_Nm**2, time_s, axis=0) / (time_s[-1] - time_s[0])
-        return np.asarray(np.sqrt(mean))
-
-    @cached_property
-    def cable_share(self) -> float:
-        """Largest share of the cables, as far as paid out, in the mass of all that moves."""
-        cables_kg = self.loaded.moving_density_kg_per_m * self.statics.length_m
-        total_kg = np.sum(cables_kg, axis=-1)
-        return float(np.max(total_kg / (total_kg + self.loaded.moving_body.mass_kg)))
-
-    def rows(self) -> Iterator[dict[str, object]]:
-        """Yield what result files hold of each cable."""
-        drawn, back = self.energy_J
-        torque, rms, turning = self.torque_Nm, self.rms_torque_Nm, self.motor_speed_rad_per_s
-        for k in range(self.statics.robot.n_cables):
-            tension, speed, power = (
-                self.tension_N[:, k],
-                self.speed_m_per_s[:, k],
-                self.power_W[:, k],
-            )
-            yield {
-                "load_case": self.name,
-                "direction": self.loaded.words or None,
-                "cable": k + 1,
-                "tension_max_N": tension.max(),
-                "tension_min_N": tension.min(),
-                "length_max_m": self.statics.length_m[:, k].max(),
-                "length_min_m": self.statics.length_m[:, k].min(),
-                "paying_out_max_m_per_s": max(speed.max(), 0.0),
-                "hauling_in_max_m_per_s": max(-speed.min(), 0.0),
-                "power_max_W": power.max(),
-                "power_min_W": power.min(),
-                "torque_max_Nm": None if torque is None else torque[:, k].max(),
-                "torque_rms_Nm": None if rms is None else rms[k],
-                "motor_speed_max_rad_per_s": None if turning is None else abs(turning[:, k]).max(),
-                "energy_drawn_J": drawn[k],
-                "energy_returned_J": back[k],
-            }
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,9 +48,15 @@ class PathAnalysis:
     ----------
     directions : tuple of tuple of PathCase
         Each load case in all directions of its loads.
+    life : RopeLife or None
+        What the study says of the bends that a rope bears.
+    sheave_diameter_m : float or None
+        At the exit points [m].
     """
 
     directions: tuple[tuple[PathCase, ...], ...]
+    life: RopeLife | None = None
+    sheave_diameter_m: float | None = None
 
     @cached_property
     def cases(self) -> tuple[PathCase, ...]:
@@ -197,6 +76,14 @@ class PathAnalysis:
         """How the platform moves."""
         return self.cases[0].motion
 
+    @cached_property
+    def bending(self) -> tuple[tuple[CableBending, ...], ...]:
+        """Of each of the cases each cable in one run; none of a case that is not held."""
+        return tuple(
+            bending_of(case, self.life, self.sheave_diameter_m) if case.is_held else ()
+            for case in self.cases
+        )
+
     def to_dict(self) -> Json:
         """Return what ``result.json`` holds."""
         motion = self.motion
@@ -212,6 +99,11 @@ class PathAnalysis:
             "acceleration_max_m_per_s2": gain,
             "cable_share": max(case.cable_share for case in self.cases),
             "winches": [row for case in self.cases for row in case.rows()],
+            "bending": [
+                {"load_case": case.name, "cable": number, **cable.to_dict()}
+                for case, cables in zip(self.cases, self.bending, strict=True)
+                for number, cable in enumerate(cables, start=1)
+            ],
         }
 
     def to_csv(self) -> str:
@@ -225,8 +117,11 @@ def path_of(analysis: Analysis) -> PathAnalysis | None:
     if motion is None or analysis.qualities is None:
         return None
     every = design_loads(analysis.study, analysis.built, analysis.qualities.cable)
+    selection = analysis.study.selection
     return PathAnalysis(
-        tuple(tuple(_along(loaded, motion) for loaded in loads.directions) for loads in every)
+        tuple(tuple(_along(loaded, motion) for loaded in loads.directions) for loads in every),
+        None if selection is None else selection.rope_life,
+        None if selection is None else selection.sheave_diameter_m,
     )
 
 
@@ -236,7 +131,14 @@ def _along(loaded: Loaded, motion: Motion) -> PathCase:
 
 
 def path_requirements(analysis: Analysis) -> Iterator[Requirement]:
-    """Yield what the winches and motors of a study have to do along its path."""
+    """Yield what winches, motors and ropes of a study have to do along its path."""
+    path, chosen = analysis.path, analysis.assignment
+    if path is not None:
+        grades = () if chosen is None else [rope.grade for rope in chosen.by_cable]
+        is_steel = all(grade.material in ("steel", "stainless steel") for grade in grades)
+        yield from life_requirements(
+            path.directions, path.life, path.sheave_diameter_m, is_steel and len(grades) > 0
+        )
     winches = analysis.built.robot.winches
     asked = (
         ("winch_speed", "Winch speed", "rate of the unstrained length", "m/s",

@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.path import PathCase
+from designer.analysis.path_case import PathCase
 from designer.model.motion import Motion, limited, timed, unwrapped
 from designer.model.requirement import State
 from designer.report.design.drawings import Drawings
@@ -261,7 +261,7 @@ def test_page_of_the_report(tmp_path: Path) -> None:
     drawings = Drawings(analysis, draws=True, missing="no scenes here")
     page = rendered(section(drawings, "path")).body
     assert "a cubic spline in time through 3 rows of path.csv" in page
-    assert page.count("<tr") == 1 + 2 * 3
+    assert page.count("<tr") == 2 * (1 + 2 * 3)
     assert "cable 3" in page  # of the chart
     summary = rendered(section(drawings, "answer")).body
     assert "instants of the path were solved one by one" in summary

@@ -184,3 +184,30 @@ def test_speeds_of_winches_need_a_path(along: StudyOf, tmp_path: Path) -> None:
 
 def test_a_name_alone_is_the_file() -> None:
     assert PathSection.model_validate("a.csv").file == "a.csv"
+
+
+@pytest.mark.parametrize(
+    ("given", "asked", "told"),
+    [
+        ("", "sheave_diameter: 0.3\n  rope_life: {CONSTANTS}", "no path along which ropes bend"),
+        ("path: path.csv", "rope_life: {CONSTANTS}", "the sheaves' diameter is not given"),
+        (
+            "path: path.csv",
+            "sheave_diameter: 0.3\n  rope_life: {CONSTANTS, days_min: 9}",
+            "selection.rope_life.runs_per_day",
+        ),
+        ("path: path.csv", "sheave_diameter: 0.3\n  rope_life: {b0: 1}", "selection.rope_life"),
+    ],
+)
+def test_the_life_of_a_rope_needs_its_path_sheave_and_source(
+    along: StudyOf, given: str, asked: str, told: str
+) -> None:
+    constants = "b0: 1, b1: -2, b2: 5, b3: -1, wire_strength: 1770 MPa, source: a book"
+    more = "selection:\n  " + asked.replace("CONSTANTS", constants)
+    with pytest.raises(InputError, match=told):
+        along(TIMED, given or "region: {points: [[0, 0, 2]]}", more)
+    if told.startswith("no path"):
+        life = along(TIMED, "path: path.csv", more).selection
+        assert life is not None
+        assert life.rope_life is not None
+        assert life.rope_life.source == "a book"

@@ -204,6 +204,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
             Entry(f"selection.limits.{name}", "default", "none")
             for name in ("stiffness", "excitation", "drum_capacity", "platform_frequency")
         ),
+        Entry("selection.rope_life", "default", "none"),
         Entry("load_cases", "default", "none"),
         Entry("catalogues", "default", "none"),
         Entry("measurements", "default", "none"),
@@ -273,8 +274,8 @@ def _with_options(text: str) -> str:
 
 def test_the_options_in_the_starter_config_are_true(study_of: StudyOf) -> None:
     text = _with_options(example_file("fast").read_text(encoding="utf-8"))
-    choices = re.compile(r"(?m)^ *(planar|poses|path|orientation\w*):.*\n")
-    assert len(choices.findall(text)) == 9
+    choices = re.compile(r"(?m)^ *(planar|poses|path|rope_life|orientation\w*):.*\n")
+    assert len(choices.findall(text)) == 10
     text = choices.sub("", text)
     with pytest.raises(InputError, match="uncertainty or groups, not both"):
         study_of(text)

@@ -172,6 +172,7 @@ _NO_DRUM = "robot.winches.drum_diameter, which tells the torque of a tension"
 _PATH = "workspace.path"
 _NO_PATH = "workspace.path, along which speed and power are evaluated"
 _DRUM = "robot.winches.drum"
+_LIFE, _SHEAVE = "selection.rope_life", "selection.sheave_diameter"
 _NO_DIAMETER = "robot.winches.drum_diameter beside it"
 _NO_SHEAVE = f"{_DRUM}.sheave_distance, which tells the angle"
 _NO_ANGLE = f"{_DRUM}.fleet_angle_max, or leave it out"
@@ -181,6 +182,9 @@ _NEEDS = (
         for name in ("speed_max", "motor.speed", "motor.power")
     ),
     ("selection", "workspace", "has no meaning without a workspace", _NO_WORKSPACE),
+    (_LIFE, _PATH, "there is no path along which ropes bend", "workspace.path, or leave it out"),
+    (_LIFE, _SHEAVE, "the sheaves' diameter is not given", f"{_SHEAVE} beside it"),
+    (f"{_LIFE}.days_min", f"{_LIFE}.runs_per_day", "a day has no runs", f"{_LIFE}.runs_per_day"),
     ("selection.max_distinct_products", _GROUPS, _NO_LIMIT, "groups, or neither"),
     (_CASES, "workspace", "there is no workspace", _NO_CASES),
     (_UNCERTAINTY, "selection", "there is no selection", _NO_ROPE),

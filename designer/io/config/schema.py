@@ -33,6 +33,7 @@ from designer.model.measurements import LogColumn, Measurements, Reading, Sessio
 from designer.model.motion import Ends
 from designer.model.region import Region, Sampling
 from designer.model.robot import Poses
+from designer.model.rope_life import RopeLife
 from designer.model.space import Orientations
 from designer.model.workspace import SAG_MAX, HangsBelow, Workspace
 from designer.study import CableGroup, DocumentControl, Objective, RopeLimits, Selection
@@ -226,6 +227,40 @@ class LimitsSection(Section):
         )
 
 
+class RopeLifeSection(Section):
+    """How many bends a wire rope bears, after Feyrer, and how many it shall."""
+
+    b0: fields.LifeConstant = config_field("Constant b0", expected="a number, from its source")
+    """Of Feyrer's equation for the number of bending cycles; S in N, d in mm."""
+    b1: fields.LifeConstant = config_field("Constant b1", expected="a number, from its source")
+    """Of the same equation."""
+    b2: fields.LifeConstant = config_field("Constant b2", expected="a number, from its source")
+    """Of the same equation."""
+    b3: fields.LifeConstant = config_field("Constant b3", expected="a number, from its source")
+    """Of the same equation."""
+    wire_strength: fields.Stress = config_field(
+        "Strength of the wires", expected="a stress such as '1960 MPa'"
+    )
+    """Nominal tensile strength of the wires."""
+    source: fields.Text = config_field(
+        "Source of the constants", expected="where the constants are from, in a few words"
+    )
+    """Where the constants are from: the report prints it."""
+    core_factor: fields.LifeFactor = config_field("Factor of the core", 1.0)
+    """Of core and number of strands, f_C."""
+    runs_per_day: fields.RunsPerDay | None = config_field("Runs a day")
+    """How often the machine runs along workspace.path."""
+    days_min: fields.Days | None = config_field("Days that the rope shall last")
+    """At so many runs a day."""
+
+    def rope_life(self) -> RopeLife:
+        """Return them."""
+        return RopeLife(
+            self.b0, self.b1, self.b2, self.b3, self.wire_strength, self.source,
+            self.core_factor, self.runs_per_day, self.days_min,
+        )  # fmt: skip
+
+
 class SelectionSection(Section):
     """How a product is chosen."""
 
@@ -253,6 +288,8 @@ class SelectionSection(Section):
     """How many different ropes the groups of cables may have between them."""
     limits: LimitsSection = LimitsSection()
     """What else the chosen rope is checked against."""
+    rope_life: RopeLifeSection | None = None
+    """Constants that tell how many bends a rope bears along workspace.path."""
 
     @model_validator(mode="before")
     @classmethod
@@ -276,6 +313,7 @@ class SelectionSection(Section):
             groups=tuple(CableGroup(name, cables) for name, cables in groups.items()),
             max_distinct_products=self.max_distinct_products,
             limits=self.limits.limits(),
+            rope_life=None if self.rope_life is None else self.rope_life.rope_life(),
         )
 
 

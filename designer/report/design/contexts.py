@@ -288,6 +288,7 @@ def path(analysis: Analysis) -> Context | None:
         "inertia_share": max(case.cable_share for case in path.cases),
         "winches": analysis.built.robot.winches,
         "cable": qualities.cable.name,
+        "bending": list(zip(path.cases, path.bending, strict=True)),
     }
 
 

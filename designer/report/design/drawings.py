@@ -14,7 +14,7 @@ from designer.report.design.carries import STEP_M, shares_of_inputs, slopes_of_m
 from designer.report.design.pose import weight_effect
 from designer.report.document import Drawing, in_space, vector
 from designer.report.figures.charts_edge import edge_chart
-from designer.report.figures.charts_path import path_chart
+from designer.report.figures.charts_path import bending_chart, path_chart
 from designer.report.figures.charts_pose import loop_chart
 from designer.report.figures.charts_selection import candidates_chart, pareto_chart
 from designer.report.figures.charts_sensitivity import carries_chart, odds_chart, shares_chart
@@ -139,6 +139,14 @@ class Drawings:
         """What each cable does along the path."""
         path = self.analysis.path
         return None if path is None or not path.shown.is_held else path_chart(path.shown)
+
+    @chart
+    def bending(self) -> str | None:
+        """How often each place of each rope bends along the path."""
+        path = self.analysis.path
+        if path is None or not path.shown.is_held:
+            return None
+        return bending_chart(path.bending[path.cases.index(path.shown)])
 
     @scene
     def governing(self) -> Image | None:
