@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -67,6 +67,11 @@ class PathAnalysis:
         )
 
     @property
+    def is_held(self) -> bool:
+        """Whether every instant is, in all directions."""
+        return all(case.is_held for directions in self.directions for case in directions)
+
+    @property
     def shown(self) -> PathCase:
         """The load case with the largest tension."""
         return max(self.cases, key=lambda case: np.nan_to_num(case.tension_N).max())
@@ -75,6 +80,23 @@ class PathAnalysis:
     def motion(self) -> Motion:
         """How the platform moves."""
         return self.cases[0].motion
+
+    @cached_property
+    def winches(self) -> list[Json]:
+        """Each winch in each load case: the extremes over all directions of its loads."""
+        return [
+            {name: _extreme(name, [row[name] for row in of_winch]) for name in of_winch[0]}
+            for directions in self.directions
+            for of_winch in zip(*(case.rows() for case in directions), strict=True)
+        ]
+
+    @property
+    def of_largest_energy(self) -> tuple[PathCase, ...]:
+        """Each load case, in the direction in which its motors draw the largest energy together."""
+        return tuple(
+            max(each, key=lambda case: np.nan_to_num(case.energy_J[0]).sum())
+            for each in self.directions
+        )
 
     @cached_property
     def bending(self) -> tuple[tuple[CableBending, ...], ...]:
@@ -98,7 +120,7 @@ class PathAnalysis:
             "speed_max_m_per_s": speed,
             "acceleration_max_m_per_s2": gain,
             "cable_share": max(case.cable_share for case in self.cases),
-            "winches": [row for case in self.cases for row in case.rows()],
+            "winches": self.winches,
             "bending": [
                 {"load_case": case.name, "cable": number, **cable.to_dict()}
                 for case, cables in zip(self.cases, self.bending, strict=True)
@@ -180,6 +202,12 @@ def path_requirements(analysis: Analysis) -> Iterator[Requirement]:
                 loaded=case.loaded,
                 remark=remark,
             )
+
+
+def _extreme(name: str, values: Sequence[Any]) -> Any:
+    if isinstance(values[0], str) or values[0] is None:
+        return values[0]
+    return np.min(values) if "_min_" in name else np.max(values)
 
 
 def _table(cases: Sequence[PathCase]) -> Iterator[list[str]]:

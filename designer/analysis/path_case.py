@@ -125,7 +125,6 @@ class PathCase:
             )
             yield {
                 "load_case": self.name,
-                "direction": self.loaded.words or None,
                 "cable": k + 1,
                 "tension_max_N": tension.max(),
                 "tension_min_N": tension.min(),

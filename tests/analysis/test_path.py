@@ -263,8 +263,13 @@ def test_page_of_the_report(tmp_path: Path) -> None:
     assert "a cubic spline in time through 3 rows of path.csv" in page
     assert page.count("<tr") == 2 * (1 + 2 * 3)
     assert "cable 3" in page  # of the chart
+    path_block = analysis.path.to_dict()
     summary = rendered(section(drawings, "answer")).body
     assert "instants of the path were solved one by one" in summary
+    windy_rows = path_block["winches"][3:]
+    for name, values in (("tension_max_N", "tension_N"), ("power_max_W", "power_W")):
+        every = [getattr(case, values).max(axis=0) for case in analysis.path.directions[1]]
+        assert [row[name] for row in windy_rows] == np.max(every, axis=0).tolist()
     light, windy = (case.tension_N.max() for case in analysis.path.cases)
     assert light < 0.7 * windy
     for case, mass in zip(analysis.path.cases, (120.0, 240.0), strict=True):

@@ -273,10 +273,10 @@ def _cables(analysis: Analysis) -> Iterator[FabricatedCable]:
 def path(analysis: Analysis) -> Context | None:
     """What the winches do along the path; None without one, or where an instant is not held."""
     path, qualities = analysis.path, analysis.qualities
-    if path is None or qualities is None or not all(case.is_held for case in path.cases):
+    if path is None or qualities is None or not path.is_held:
         return None
     summary = path.to_dict()
-    energies = [[energy.sum() for energy in case.energy_J] for case in path.cases]
+    energies = [[energy.sum() for energy in case.energy_J] for case in path.of_largest_energy]
     return {
         "path": path,
         "is_redundant": analysis.study.robot.is_redundant,
