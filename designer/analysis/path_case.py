@@ -77,9 +77,8 @@ class PathCase:
         winches = self.winches
         if winches.drum_diameter_m is None:
             return None
-        torque = winches.torque_Nm(self.tension_N, rope_diameter_m(self.loaded.cable))
-        driven = self.speed_m_per_s > 0.0
-        return np.where(driven, torque * winches.efficiency**2, torque)
+        rope_m, is_driven = rope_diameter_m(self.loaded.cable), self.speed_m_per_s > 0.0
+        return winches.torque_Nm(self.tension_N, rope_m, is_driven)
 
     @cached_property
     def motor_speed_rad_per_s(self) -> FloatArray | None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer import checked
-from designer.arrays import FloatArray, frozen_array
+from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.model.drum import Drum
 
 
@@ -51,15 +51,21 @@ class Winches(checked.Value):
     motor_power_W: checked.Positive | None = None
     drum: Drum | None = None
 
-    def torque_Nm(self, tension_N: FloatArray, rope_diameter_m: FloatArray | float) -> FloatArray:
-        """Return the motor's torque that pulls with a tension at the exit point (...) [N·m].
+    def torque_Nm(
+        self,
+        tension_N: FloatArray,
+        rope_diameter_m: FloatArray | float,
+        is_driven: BoolArray | bool = False,
+    ) -> FloatArray:
+        """Return the motor's torque at a tension at the exit point (...) [N·m].
 
         About the centre of the rope in the outermost layer, of layers as far apart as the rope is
-        thick: M = T (D + (2 k - 1) d) / (2 i η).
+        thick: M = T (D + (2 k - 1) d) / (2 i η) where it pulls, η² of that where it is driven.
         """
         assert self.drum_diameter_m is not None
         radius_m = 0.5 * (self.drum_diameter_m + (2 * self.layers - 1) * rope_diameter_m)
-        return np.asarray(tension_N * radius_m / (self.gear_ratio * self.efficiency))
+        losses = np.where(is_driven, self.efficiency, 1.0 / self.efficiency)
+        return np.asarray(tension_N * radius_m / self.gear_ratio * losses)
 
     def without(self, cable: int) -> Winches:
         """Return the winches without that of one cable, counted from 1."""
