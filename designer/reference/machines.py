@@ -8,9 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import FloatArray, frozen_array
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2 as GRAVITY
 from designer.model.cable import Material
+from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
+from designer.model.workspace import Workspace
 from designer.reference.case import Figure, ReferenceCase
+from designer.reference.robots import COGIRO
 
 # FAST's feed cabin: CASPR, models/SCDM/spatial_manipulators/FAST; Adv. Mech. Eng. 2014/716097
 _AZIMUTHS_RAD = np.radians(30.0 + 60.0 * np.arange(6))
@@ -27,6 +31,8 @@ FAST_CABIN = Robot(
 _WIRE_ROPE = Material(5208.0, 61e9, 177.7e6)
 """6x36 WS-IWRC 1960 by EN 12385-4 over its nominal circle, with a safety factor of 5; modulus of
 6x37 IWRC by Strand Core."""
+_SMALL_ROPE = Material(5290.0, 62.7e9, 330e6)
+"""Galvanised 7x19 over its nominal circle, with a safety factor of 3."""
 _LADEN = 1.3
 """Mass of a rope with what hangs on it, over its own."""
 _RIM_M = 103.0
@@ -79,6 +85,17 @@ def _fast_cabin() -> Sequence[Figure]:
     )
 
 
+def _cogiro() -> Sequence[Figure]:
+    from designer.workspace.sweep import map_workspace
+
+    laden = replace(COGIRO.platform, wrench_N=frozen_array([0, 0, -500 * GRAVITY, 0, 0, 0]))
+    workspace = Workspace(Prism.box((-4, 4), (-3, 3), (0.5, 2.5)), samples=2000)
+    robot = replace(COGIRO, platform=laden)
+    worst = map_workspace(robot, workspace, _SMALL_ROPE, with_massless=False).sagging
+    assert worst is not None
+    return (Figure("rope for a factor of 3", "mm", 4.0, 1e3 * worst.diameter_m, 0.1),)
+
+
 CASES = (
     ReferenceCase(
         "The feed cabin of FAST, found blind",
@@ -92,5 +109,13 @@ CASES = (
         "disc. They are quasi-static, and so from above: the ropes' own, from 0.12 Hz, couple with "
         "the cabin and bring its lowest down.",
         _fast_cabin,
+    ),
+    ReferenceCase(
+        "CoGiRo with its load",
+        "Geometry: sample cogiro of github.com/cable-robots/cdpyr; a load of 500 kg on "
+        "steel ropes of 4 mm, as descriptions of the machine have it",
+        "The load hangs at the platform's frame and goes where the example goes, 8 x 6 x 2 m; that "
+        "and the safety factor of 3 are ours. The rope is galvanised 7x19 over its nominal circle.",
+        _cogiro,
     ),
 )
