@@ -112,6 +112,10 @@ def mass_by_hand(
     return float(density @ statics.length_m[counts].max(axis=0))
 
 
+_BY_HAND: dict[tuple[object, ...], float] = {}
+"""Masses of assignments, each computed once for all tests."""
+
+
 def lightest_by_hand(
     robot: Robot,
     workspace: Workspace,
@@ -119,8 +123,15 @@ def lightest_by_hand(
     products: tuple[Candidate, ...],
     most_distinct: int,
 ) -> float:
+    def mass(chosen: tuple[Candidate, ...]) -> float:
+        asked = robot, replace(workspace, region=None), [one.cables for one in groups]
+        of = (*map(repr, asked), workspace.region.points_m.tobytes(), *(c.cable for c in chosen))
+        if of not in _BY_HAND:
+            _BY_HAND[of] = mass_by_hand(robot, workspace, groups, chosen)
+        return _BY_HAND[of]
+
     return min(
-        mass_by_hand(robot, workspace, groups, chosen)
+        mass(chosen)
         for chosen in product(products, repeat=len(groups))
         if len({one.size.id for one in chosen}) <= most_distinct
     )
