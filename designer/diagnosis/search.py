@@ -5,6 +5,7 @@ And where to measure next, so that rivals part.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -63,9 +64,9 @@ class EffectTrial:
     def score(self, variance: float) -> float:
         """Return how good the model is against others of its round, in one unit for all.
 
-        Minus the loss over the variance of the best, less a penalty for each parameter.
+        Minus the loss over the variance of the best, less the penalty of the effect.
         """
-        return -self.fit.loss / variance - _PENALTY * len(self.effect.parameters)
+        return -self.fit.loss / variance - _penalty(self.effect)
 
     def may_precede(self, scores: Sequence[float], variance: float) -> bool:
         """Whether it is an error of setting up, and as good as the best, nearly."""
@@ -126,6 +127,11 @@ def _best(trials: Sequence[EffectTrial]) -> list[EffectTrial]:
     by_numbers = sorted(close, key=lambda t: len(t.effect.parameters))
     set_up = [t for t in by_numbers if t.effect.cause == "setting_up"]
     return list(dict.fromkeys([*set_up[:1], *by_numbers[:1]]))
+
+
+def _penalty(effect: Effect) -> float:
+    """Return what an effect has to gain by chance: the best of many looks gains the more."""
+    return _PENALTY * len(effect.parameters) + 2.0 * math.log(effect.looks)
 
 
 def _chance(gain: float, effect: Effect, looks: int) -> float:
@@ -260,7 +266,7 @@ class Searcher:
         least = min((reach.loss for reach in reaches.values()), default=0.0)
         variance = max(1.0, least / max(present.n_data - len(present.vector), 1))
         promised = {effect: reach.gain / variance for effect, reach in reaches.items()}
-        return dict(sorted(promised.items(), key=lambda e: _PENALTY * len(e[0].parameters) - e[1]))
+        return dict(sorted(promised.items(), key=lambda e: _penalty(e[0]) - e[1]))
 
     def _in_reach(self, effects: Sequence[Effect], effect: Effect, present: Fit) -> Reach:
         every = self._sorted([*self.given, *effects, effect])
@@ -418,7 +424,7 @@ class Searcher:
         return effects
 
     def _penalised(self, model: Fit) -> float:
-        return model.loss + _PENALTY * model.variance * len(model.vector)
+        return model.loss + model.variance * sum(_penalty(s.effect) for s in model.settings)
 
     def _sorted(self, effects: Sequence[Effect]) -> list[Effect]:
         place = {effect.key: k for k, effect in enumerate(self.candidates)}

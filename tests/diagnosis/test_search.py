@@ -8,8 +8,9 @@ from twins.dataset import make, size_for
 from twins.robots import YARD3
 
 from designer.diagnosis.case import case_of
+from designer.diagnosis.fit import Fit
 from designer.diagnosis.problem import Predictor, Problem
-from designer.diagnosis.search import Searcher
+from designer.diagnosis.search import EffectTrial, Searcher, _best
 from designer.diagnosis.statistics import heldout_rows
 from designer.effects.effect import Setting
 from designer.io.config import read_study
@@ -56,3 +57,21 @@ def test_a_model_that_holds_no_pose_is_worse_than_any_error(searcher) -> None:
     assert np.isnan(problem.predicted(settings).length_m).all()
     residual = problem.residual(settings)
     assert (residual > 5.0 * np.abs(problem.measured.readings) / problem.sigma).all()
+
+
+def test_a_wave_among_thousands_is_no_better_than_the_zero_of_its_winch(searcher) -> None:
+    """By chance the best of 2000 waves takes 20 off the loss in one set of three."""
+    by_key = {effect.key: effect for effect in searcher.candidates}
+
+    def trial(key: str, loss: float) -> EffectTrial:
+        effect = by_key[key]
+        values = {p.name: p.neutral for p in effect.parameters}
+        vector = np.array([*values.values()])
+        model = Fit((Setting(effect, values),), vector, vector, loss, 500, {key: 1.0})
+        return EffectTrial(effect, model, 5000.0, 0.0, heldout_gain=4000.0)
+
+    zero, wave = "winch_zero of cable 1", "drum_eccentricity of cable 1"
+    (best,) = _best([trial(zero, 500.0), trial(wave, 480.0)])
+    assert best.effect.key == zero
+    best, *_ = _best([trial(zero, 500.0), trial(wave, 300.0)])
+    assert best.effect.key == wave
