@@ -72,13 +72,17 @@ def solve_internal(
 
     def solve(run: PulleyRun) -> tuple[FloatArray, FloatArray, FloatArray]:
         chord_m = cable_geometry(robot, poses, run.exit_points_m).chord_m
-        pull = np.fmax(start_N / (cable.weight_N_per_m * chord_m), _LEAST_PULL)
+        pull, read_pull = (
+            np.fmax(at_N / (cable.weight_N_per_m * chord_m), _LEAST_PULL)
+            for at_N in (start_N, np.fmax(tension_N, start_N))
+        )
         solve_internal_poses(
             upright_situation(robot, poses, run.exit_points_m, force_N),
             one_cable(robot, cable),
             plain(np.stack([length_m - run.wrap_m, tension_N], axis=-1)),
             plain(noise),
-            plain(pull if near is None else _pull_near(near, pull)),
+            # From small pulls, which tensions hardly pull at in a logarithm, none finds the way up.
+            plain(read_pull if near is None else _pull_near(near, read_pull)),
             plain(pull),
             _SPREAD,
             plain(per_reach(robot)),

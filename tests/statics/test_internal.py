@@ -160,6 +160,24 @@ def test_a_wild_reading_moves_little() -> None:
     assert np.abs(found.exit_tension_N - there.exit_tension_N).max() < 4.0 * NOISE[1]
 
 
+def test_tensions_are_believed_where_an_attachment_is_in_the_wrong_place() -> None:
+    """Of stiff cables, held well above the least tensions, and read not surely."""
+    corners = np.array([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))])
+    held = np.array([[x, y, -z] for x, y, z in 2.0 * corners - 1.0]) * [0.4, 0.3, 0.2]
+    robot = Robot(
+        frozen_array(corners * [6.0, 5.0, 3.5]),
+        Platform(3.0, frozen_array(held + np.array([0.02, 0, 0]))),
+    )
+    tight = Cable(float("nan"), 1e-4, 1e5, float("inf"))
+    at = np.random.default_rng(4).uniform([2.5, 2.0, 1.5], [3.5, 3.0, 2.0], (COUNT, 3))
+    poses, none = Poses.at(at, np.full((COUNT, 3), 0.02)), nothing(robot)
+    there = solve_internal(robot, poses, tight, none, np.full_like(none, 500.0), (1e-3, 1.0))
+    assert np.median(there.exit_tension_N) > 300.0
+    length = there.length_m + np.array([0.0, 0.0, 0.0, 0.015, 0.0, 0.0, 0.0, 0.0])
+    found = solve_internal(robot, poses, tight, length, there.exit_tension_N, (0.04, 50.0))
+    assert np.abs(found.exit_tension_N - there.exit_tension_N).max() < 100.0
+
+
 def test_readings_that_contradict_each_other_still_give_a_balance() -> None:
     there = some_balance(EIGHT)
     off = np.random.default_rng(3).normal(0.0, 300.0, there.length_m.shape)
