@@ -315,12 +315,14 @@ STATIC = LoadCase("static")
 
 
 def _aside(along: FloatArray, axes: FloatArray, step: float) -> Iterator[FloatArray]:
-    """Yield unit vectors by a step along each axis, and against it, from one (3,)."""
-    for side in (*axes, *-axes):
-        direction = along + step * side
-        size = float(np.linalg.norm(direction))
-        if size > 0.0:
-            yield direction / size
+    """Yield unit vectors by a step aside from one (3,) among those that axes (n, 3) span.
+
+    Each way across it; a step along it would turn nothing.
+    """
+    *across, _ = np.linalg.svd(axes - np.outer(axes @ along, along), full_matrices=False)[2]
+    for side in across:
+        for direction in (along + step * side, along - step * side):
+            yield direction / np.linalg.norm(direction)
 
 
 def free_axes(robot: Robot) -> FloatArray:

@@ -431,5 +431,5 @@ def steepest(
         highest, turned = max(trials, key=lambda trial: trial[0])
         gains = highest > severity
         loaded, severity = (turned, highest) if gains else (loaded, severity)
-        step *= 2.0 if gains else 0.25
+        step *= 1.0 if gains else 0.125
     return loaded, severity
