@@ -171,6 +171,6 @@ def test_a_study_that_asks_for_every_check_lacks_none(solve: Callable[[str], Ana
         "tension of winches (no largest is given), torque of motors (none is given), speed of "
         "winches (none is given), speed of motors (none is given), power of motors (none is "
         "given), height over a floor (none is given), natural frequencies of the platform (no "
-        "limit is given), layers on the drums (their length is not given) and fleet angle (none "
-        "is given)"
+        "limit is given), layers on the drums (their length is not given), fleet angle (none "
+        "is given) and life of the rope (no days are asked for)"
     )
