@@ -21,9 +21,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from designer.analysis.bending import CableBending, bending_of, life_requirements
 from designer.analysis.path_case import PathCase
 from designer.analysis.requirements import design_loads
+from designer.analysis.rope_bending import CableBending, bending_of, life_requirements
 from designer.documents.plain import Json, csv_text
 from designer.measured.assign import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.model.load_case import Loaded
@@ -52,11 +52,14 @@ class PathAnalysis:
         What the study says of the bends that a rope bears.
     sheave_diameter_m : float or None
         At the exit points [m].
+    is_steel : bool
+        Whether the ropes are known to be of steel wire, as those of the constants are.
     """
 
     directions: tuple[tuple[PathCase, ...], ...]
     life: RopeLife | None = None
     sheave_diameter_m: float | None = None
+    is_steel: bool = False
 
     @cached_property
     def cases(self) -> tuple[PathCase, ...]:
@@ -99,12 +102,19 @@ class PathAnalysis:
         )
 
     @cached_property
-    def bending(self) -> tuple[tuple[CableBending, ...], ...]:
-        """Of each of the cases each cable in one run; none of a case that is not held."""
+    def bent(self) -> tuple[tuple[tuple[PathCase, tuple[CableBending, ...]], ...], ...]:
+        """Each load case in all directions, with what each cable bends in one run."""
+        life = self.life if self.is_steel else None
         return tuple(
-            bending_of(case, self.life, self.sheave_diameter_m) if case.is_held else ()
-            for case in self.cases
+            tuple((case, bending_of(case, life, self.sheave_diameter_m)) for case in each)
+            for each in self.directions
         )
+
+    @property
+    def bending(self) -> tuple[tuple[CableBending, ...], ...]:
+        """Of each of the cases what each cable bends; none of a case that is not held."""
+        of_case = {case: cables for each in self.bent for case, cables in each}
+        return tuple(of_case[case] for case in self.cases)
 
     def to_dict(self) -> Json:
         """Return what ``result.json`` holds."""
@@ -140,10 +150,12 @@ def path_of(analysis: Analysis) -> PathAnalysis | None:
         return None
     every = design_loads(analysis.study, analysis.built, analysis.qualities.cable)
     selection = analysis.study.selection
+    grades = [rope.grade for rope in analysis.assignment.by_cable]
     return PathAnalysis(
         tuple(tuple(_along(loaded, motion) for loaded in loads.directions) for loads in every),
         None if selection is None else selection.rope_life,
         None if selection is None else selection.sheave_diameter_m,
+        bool(grades) and all(g.material in ("steel", "stainless steel") for g in grades),
     )
 
 
@@ -154,13 +166,9 @@ def _along(loaded: Loaded, motion: Motion) -> PathCase:
 
 def path_requirements(analysis: Analysis) -> Iterator[Requirement]:
     """Yield what winches, motors and ropes of a study have to do along its path."""
-    path, chosen = analysis.path, analysis.assignment
+    path = analysis.path
     if path is not None:
-        grades = () if chosen is None else [rope.grade for rope in chosen.by_cable]
-        is_steel = all(grade.material in ("steel", "stainless steel") for grade in grades)
-        yield from life_requirements(
-            path.directions, path.life, path.sheave_diameter_m, is_steel and len(grades) > 0
-        )
+        yield from life_requirements(path.bent, path.life)
     winches = analysis.built.robot.winches
     asked = (
         ("winch_speed", "Winch speed", "rate of the unstrained length", "m/s",

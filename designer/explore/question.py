@@ -203,7 +203,7 @@ class Question:
 
     def _at_samples(self, workspace: Workspace, grades: Sequence[Grade]) -> list[Candidate]:
         """Return all sizes of these grades with what they meet at few samples."""
-        sampled = workspace.hurried(FEW_AT_FIRST)
+        sampled = workspace.with_fewer_samples(FEW_AT_FIRST)
         selection = replace(self.selection, grades=tuple(grade.id for grade in grades))
         return at_samples(sampled, selection, grades, self.built, self.study.load_cases)
 

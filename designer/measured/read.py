@@ -26,6 +26,7 @@ from designer.measured.assign import (
 from designer.measured.formats import is_bag, read_bag, read_table
 from designer.measured.in_part import coordinates_of, set_aside
 from designer.measured.join import joined
+from designer.measured.joined_sessions import one_after_the_other
 from designer.measured.orientation import orientation
 from designer.measured.rows import (
     EPOCH_S,
@@ -37,7 +38,6 @@ from designer.measured.rows import (
     utc,
 )
 from designer.measured.sense import sense_faults, unit_faults
-from designer.measured.sessions import one_after_the_other
 from designer.measured.table import LogTable
 from designer.model.measured_data import KINDS, Measured
 from designer.model.measurements import Measurements

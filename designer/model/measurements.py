@@ -40,7 +40,7 @@ class LogColumn:
 
 
 @dataclass(frozen=True, slots=True)
-class Session:
+class LogSession:
     """One of several times at which a machine was measured: its files, and what is its own.
 
     Parameters
@@ -93,7 +93,7 @@ class Measurements(checked.Value):
     position_noise_m, rotation_noise_rad : float or None
         Standard deviation of a measured coordinate [m] and angle [rad] of poses that are estimated;
         None where such are not used.
-    sessions : tuple of Session
+    sessions : tuple of LogSession
         Where the machine was measured several times, those, two at least; ``file`` is then that of
         the first, and all else is of all of them.
     place : str
@@ -124,7 +124,7 @@ class Measurements(checked.Value):
     more_files: tuple[Path, ...] = ()
     position_noise_m: checked.Positive | None = None
     rotation_noise_rad: checked.Positive | None = None
-    sessions: tuple[Session, ...] = ()
+    sessions: tuple[LogSession, ...] = ()
     place: str = "measurements.file"
 
     @property

@@ -51,7 +51,7 @@ class PointList(region.Region):
     def samples_m(self, count: int, sampling: region.Sampling, seed: int) -> Iterator[FloatArray]:
         return region.in_chunks(self.points_m)
 
-    def thinned(self, most: int) -> PointList:
+    def with_fewer_points(self, most: int) -> PointList:
         count = len(self.points_m)
         every = np.linspace(0, count - 1, min(most, count)).astype(int)
         return PointList(self.points_m[every])

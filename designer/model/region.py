@@ -113,7 +113,7 @@ class Region(checked.Value, ABC):
         A list of points is taken whole.
         """
 
-    def thinned(self, most: int) -> Region:
+    def with_fewer_points(self, most: int) -> Region:
         """Return a list of at most so many of its points, evenly drawn; any other region whole."""
         return self
 

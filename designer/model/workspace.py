@@ -92,11 +92,11 @@ class Workspace(checked.Value):
         """
         return map(self.space.places, self.positions_m())
 
-    def hurried(self, most: int) -> Workspace:
+    def with_fewer_samples(self, most: int) -> Workspace:
         """Return the same with so many samples at most, which of a list are points of it."""
         if self.sample_count <= most:
             return self
-        return replace(self, samples=most, region=self.region.thinned(most))
+        return replace(self, samples=most, region=self.region.with_fewer_points(most))
 
     def thinned(self, most: int) -> FloatArray:
         """Return about `most` places (n, n_coordinates), fairly drawn from all samples [m, rad].

@@ -203,7 +203,7 @@ class Cases:
         workspace = whole_workspace = self.workspace.of_case(case)
         keeps = any(candidate.keeps_lengths for candidate in loaded)
         if self.few is not None and not keeps:
-            workspace = workspace.hurried(self.few)
+            workspace = workspace.with_fewer_samples(self.few)
         shares = bool(loaded) and not case.changes_robot and not keeps
         solved = sampled_at_tension(loaded, workspace, progress)
         if not shares:

@@ -13,7 +13,7 @@ from pairs.options import BASES
 from pairs.table import analysed
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.bending import life_requirements
+from designer.analysis.rope_bending import life_requirements
 from designer.model.requirement import State
 
 LIFE: dict[str, Any] = {
@@ -101,11 +101,14 @@ def test_days_that_are_asked_for_are_a_requirement(tmp_path: Path) -> None:
     assert path.life is not None
     assert life.demand == 3000.0
     assert life.capacity == min(cable.runs or 0.0 for cable in path.bending[0])
-    for factor, is_steel, state in (
-        (0.99, True, State.HOLDS),
-        (1.01, True, State.FAILS),
-        (0.01, False, State.OPEN),
+    assert path.is_steel
+    fibre = replace(path, is_steel=False)
+    for factor, of_path, state in (
+        (0.99, path, State.HOLDS),
+        (1.01, path, State.FAILS),
+        (0.01, fibre, State.OPEN),
     ):
         asked = replace(path.life, days_min=factor * life.capacity / 30.0)
-        (other,) = life_requirements(path.directions, asked, 0.3, is_steel)
+        (other,) = life_requirements(of_path.bent, asked)
         assert other.state is state
+    assert {cable.runs for cable in fibre.bending[0]} == {None}

@@ -77,8 +77,8 @@ def study_of(
     declared = read_effects(section.effects, robot.n_cables, known.by_id).effects
     entries += _effect_entries(declared, document.root, known, robot.n_cables)
     of_sessions = _session_effects(section, robot.n_cables, known)
-    for found in of_sessions:
-        entries += _effect_entries(found, document.root, known, robot.n_cables)
+    for declared_there in of_sessions:
+        entries += _effect_entries(declared_there, document.root, known, robot.n_cables)
     pose, selection = section.pose, section.selection
     places = places_of(section, document, robot, material)
     if places.motion is not None:
@@ -102,7 +102,9 @@ def study_of(
         measurements=None if measurements is None else measurements.measurements(folder),
         uncertainty=None if uncertainty is None else uncertainty.value(),
         effects=tuple(effect for _, effect in declared),
-        session_effects=tuple(tuple(effect for _, effect in found) for found in of_sessions),
+        session_effects=tuple(
+            tuple(effect for _, effect in declared_there) for declared_there in of_sessions
+        ),
         known_effects=known,
         surroundings=Surroundings(section.surroundings.temperature),
         family=family,

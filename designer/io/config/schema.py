@@ -29,7 +29,7 @@ from designer.io.config.columns import Columns
 from designer.io.config.machine import ConfiguredCable, LoadCaseSection, RobotSection
 from designer.io.config.uncertainty import UncertaintySection
 from designer.model.duty import RUNNING_ROPE, DutyClass
-from designer.model.measurements import LogColumn, Measurements, Reading, Session
+from designer.model.measurements import LogColumn, LogSession, Measurements, Reading
 from designer.model.motion import Ends
 from designer.model.region import Region, Sampling
 from designer.model.robot import Poses
@@ -376,11 +376,11 @@ class SessionSection(Section):
     """What is known of this session alone, as `effects` of the machine; `designer diagnose` writes
     here what it finds."""
 
-    def session(self, folder: Path) -> Session:
+    def session(self, folder: Path) -> LogSession:
         """Return its files, from this folder, and what is unknown of it."""
         files = (self.file,) if isinstance(self.file, str) else self.file
         paths = [folder / name for name in files]
-        return Session(paths[0], tuple(paths[1:]), self.unknown)
+        return LogSession(paths[0], tuple(paths[1:]), self.unknown)
 
 
 Sessions = Annotated[

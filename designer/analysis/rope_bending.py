@@ -9,6 +9,7 @@ between exit point and winch.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -34,31 +35,23 @@ class CableBending:
     ----------
     places_m : array (n_places,)
         From the platform's end [m].
-    passes : tuple of array (n_steps, n_places)
-        In which step which place comes to the sheave or leaves it, by its platform's end and by
-        the other, and comes to the drum or leaves it, where the study says where it is.
+    on_sheave : array (n_places,)
+        Bending cycles at the exit point.
+    on_drum : array (n_places,) or None
+        Bending cycles on the drum; None where the study does not say where it is.
     damage : array (n_places,) or None
-        Share of the life that one run takes, after Palmgren and Miner; None without constants.
+        Share of the life that one run takes, after Palmgren and Miner; None where it is not known.
     """
 
     places_m: FloatArray
-    passes: tuple[BoolArray, ...]
+    on_sheave: FloatArray
+    on_drum: FloatArray | None
     damage: FloatArray | None = None
-
-    @cached_property
-    def on_sheave(self) -> FloatArray:
-        """Bending cycles at the exit point (n_places,)."""
-        return _cycles(self.passes[:2])
-
-    @cached_property
-    def on_drum(self) -> FloatArray | None:
-        """Bending cycles on the drum (n_places,); None where it is not known."""
-        return _cycles(self.passes[2:]) if len(self.passes) > 2 else None
 
     @property
     def cycles(self) -> FloatArray:
         """All of them (n_places,)."""
-        return _cycles(self.passes)
+        return self.on_sheave if self.on_drum is None else self.on_sheave + self.on_drum
 
     @cached_property
     def worst(self) -> int:
@@ -67,7 +60,7 @@ class CableBending:
 
     @property
     def runs(self) -> float | None:
-        """How many runs it bears until it breaks, in the mean; None without constants."""
+        """How many runs it bears until it breaks, in the mean; None where it is not known."""
         if self.damage is None:
             return None
         largest = self.damage[self.worst]
@@ -90,91 +83,94 @@ class CableBending:
         return float(step_m * np.count_nonzero(self.cycles))
 
 
-def _cycles(passes: Sequence[BoolArray]) -> FloatArray:
-    return np.asarray(0.5 * np.sum(passes, axis=(0, 1)))
-
-
 def bending_of(
     case: PathCase, life: RopeLife | None, sheave_diameter_m: float | None
 ) -> tuple[CableBending, ...]:
-    """Return what each cable bends in a run, of a case that is held at every instant."""
+    """Return what each cable bends in a run; nothing where an instant is not held.
+
+    ``life`` is None where it gives no constants for these ropes.
+    """
+    if not case.is_held:
+        return ()
     statics, winches = case.statics, case.winches
-    ends_m = [statics.free_length_m, statics.length_m]
+    rope_m = float(np.max(rope_diameter_m(case.loaded.cable)))
+    bent = [(statics.free_length_m, sheave_diameter_m), (statics.length_m, sheave_diameter_m)]
     if winches.positions_m is not None and winches.drum_diameter_m is not None:
         distance_m = np.linalg.norm(winches.positions_m - statics.robot.exit_points_m, axis=1)
-        ends_m.append(ends_m[1] + distance_m / (1.0 + case.tension_N / statics.axial_stiffness_N))
-    every = range(statics.robot.n_cables)
-    cables = [_bending([end_m[:, k] for end_m in ends_m]) for k in every]
-    if life is None or sheave_diameter_m is None:
-        return tuple(cables)
-    rope_m = float(np.max(rope_diameter_m(case.loaded.cable)))
-    drum_m = (winches.drum_diameter_m or 0.0) + rope_m
-    over_m = [sheave_diameter_m, sheave_diameter_m, drum_m][: len(ends_m)]
-    return tuple(
-        replace(cables[k], damage=_damage(cables[k], case.tension_N[:, k], rope_m, over_m, life))
-        for k in every
-    )
+        unstrained_m = distance_m / (1.0 + case.tension_N / statics.axial_stiffness_N)
+        bent.append((statics.length_m + unstrained_m, winches.drum_diameter_m + rope_m))
+    cables = []
+    for k in range(statics.robot.n_cables):
+        cable, passes = _bending([end_m[:, k] for end_m, _ in bent])
+        if life is not None:
+            step_N = 0.5 * (case.tension_N[1:, k] + case.tension_N[:-1, k])
+            over_m = [diameter_m for _, diameter_m in bent if diameter_m is not None]
+            damage = _damage(passes, over_m, step_N, rope_m, cable.bent_m, life)
+            cable = replace(cable, damage=damage)
+        cables.append(cable)
+    return tuple(cables)
 
 
-def _bending(ends_m: Sequence[FloatArray]) -> CableBending:
-    """Return it of one cable, of the ends (n_instants,) of its bent pieces."""
+def _bending(ends_m: Sequence[FloatArray]) -> tuple[CableBending, list[BoolArray]]:
+    """Return it of the ends (n_instants,) of a cable's bent pieces, and what passes them."""
     low, high = ends_m[0].min(), ends_m[-1].max()
     places_m = low + (high - low) * (np.arange(_PLACES) + 0.5) / _PLACES
-    return CableBending(places_m, tuple(crossings(end_m, places_m) for end_m in ends_m))
+    passes = [crossings(end_m, places_m) for end_m in ends_m]
+    come, leave, *wound = (0.5 * each.sum(axis=0) for each in passes)
+    return CableBending(places_m, come + leave, wound[0] if wound else None), passes
 
 
 def _damage(
-    cable: CableBending,
-    tension_N: FloatArray,
-    rope_m: float,
+    passes: Sequence[BoolArray],
     over_m: Sequence[float],
+    step_N: FloatArray,
+    rope_m: float,
+    bent_m: float,
     life: RopeLife,
 ) -> FloatArray:
     """Return the share of its life (n_places,) that a run takes, half a cycle a passage."""
-    b, step_N = (life.b0, life.b1, life.b2, life.b3), 0.5 * (tension_N[1:] + tension_N[:-1])
-    damage = np.zeros(_PLACES)
-    for passes, diameter_m in zip(cable.passes, over_m, strict=True):
+    b, damage = (life.b0, life.b1, life.b2, life.b3), np.zeros(_PLACES)
+    for of_end, diameter_m in zip(passes, over_m, strict=True):
         borne = borne_cycles(
-            step_N, rope_m, diameter_m, cable.bent_m, b, life.wire_strength_Pa, life.core_factor
+            step_N, rope_m, diameter_m, bent_m, b, life.wire_strength_Pa, life.core_factor
         )
-        damage += 0.5 * (passes / borne[:, None]).sum(axis=0)
+        damage += 0.5 * (of_end / borne[:, None]).sum(axis=0)
     return damage
 
 
 def life_requirements(
-    directions: Sequence[Sequence[PathCase]],
+    directions: Sequence[Sequence[tuple[PathCase, Sequence[CableBending]]]],
     life: RopeLife | None,
-    sheave_diameter_m: float | None,
-    is_steel: bool,
 ) -> Iterator[Requirement]:
-    """Yield whether the ropes last as long as they shall, in each load case by itself."""
+    """Yield whether the ropes last as long as they shall, in each load case by itself.
+
+    Of each direction of its loads what each cable bends.
+    """
     if life is None or life.days_min is None or life.runs_per_day is None:
         return
     wanted = life.days_min * life.runs_per_day
-    for cases in directions:
+    for each in directions:
         ends = [
-            (bending.runs or 0.0, cable, case)
-            for case in cases
-            if case.is_held
-            for cable, bending in enumerate(bending_of(case, life, sheave_diameter_m), start=1)
+            (bending.runs, number, case)
+            for case, cables in each
+            for number, bending in enumerate(cables, start=1)
+            if bending.runs is not None
         ]
-        runs, cable, worst = min(ends, key=lambda end: end[0], default=(np.nan, None, cases[0]))
-        remark, state = "", State.HOLDS if runs >= wanted else State.FAILS
-        if not is_steel or np.isnan(runs):
-            remark = "constants are those of steel wire ropes" if not is_steel else ""
-            state = State.OPEN
+        runs, cable, worst = min(ends, key=lambda end: end[0], default=(math.nan, None, each[0][0]))
+        is_held = all(case.is_held for case, _ in each)
+        state = State.HOLDS if is_held and runs >= wanted else State.OPEN
         yield Requirement(
             id="rope_life",
             title="Life of the rope",
             formula="runs along the path in the days asked for ≤ 1 / Σ (n / N), half a cycle for "
             "each time that the rope is bent or straightened",
             source=f"selection.rope_life; Palmgren and Miner, N after Feyrer: {life.source}",
-            state=state,
+            state=State.FAILS if runs < wanted else state,
             load_case=worst.name,
             demand=wanted,
             capacity=runs,
-            utilisation=wanted / runs if runs > 0.0 else np.inf,
+            utilisation=wanted / runs if runs > 0.0 else math.inf if runs == 0.0 else math.nan,
             cable=cable,
             loaded=worst.loaded,
-            remark=remark,
+            remark="" if ends or not is_held else "the constants are of steel wire ropes",
         )
