@@ -33,6 +33,7 @@ _SELDOM = {
     *("name", "not_tried", "strongest_covariate", "fraction_of_variance"),
     *("grade", "size_id", "safety_factor"),
     *("first", "second", "correlation"),  # of parameters that data tell badly apart
+    "session",  # of logs of several sessions, which no page has
     # Of findings, each of which some studies have.
     *("policy", "depth_m", "inradius_m", "lowest_z_m"),
     *(
