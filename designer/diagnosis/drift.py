@@ -7,7 +7,8 @@ own. Which φ, and which share of the variance the former has, is told by the re
 tells that badly, and rather too low than too high. So of what the likelihood does not exclude, and
 what is no less likely than white noise, that is taken of which a mean over the rows is the most in
 doubt. The gain of an effect is then counted by generalised least squares: what is left is made
-white by a Kalman filter, which knows rows that are missing or held out.
+white by a Kalman filter, which knows rows that are missing or held out, and that what a row's own
+unknowns leave of its errors varies with the pose.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import HUBER, Fit, jacobian, with_places
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import beside, orthonormal, without_outliers
-from designer.effects.effect import Effect
+from designer.effects import length_offset, tension_bias
+from designer.effects.effect import Effect, Setting
 
 _DECAYS = (0.5, 0.8, 0.9, 0.95, 0.98, 0.995)
 """The last keeps half of itself over 140 rows: to a log of some hundred, a random walk."""
@@ -29,6 +31,9 @@ _NOT_EXCLUDED = 3.0
 """Logarithm of the likelihood's ratio to the best: one true noise in seventy is farther off."""
 _LEAST_FREEDOM = 10
 """Readings beyond the parameters without which nothing is told of how noise lasts."""
+
+_LEAST_LEFT = 0.1
+"""Of an error; what a row's unknowns take up whole is left to the digits of a slope."""
 
 
 def beside_drift(problem: Problem, rest: Fit, model: Fit, effect: Effect, rows: BoolArray) -> float:
@@ -51,13 +56,20 @@ def beside_drift(problem: Problem, rest: Fit, model: Fit, effect: Effect, rows: 
     own = np.zeros(len(model.vector), dtype=np.bool_)
     for setting, columns in with_places(model.settings):
         own[columns] = setting.effect.key == effect.key
-    return gain_beside_drift(
-        before, after, slopes, own, problem.free_readings(mask) / max(mask.sum(), 1)
-    )
+    free = problem.free_readings(mask) / max(mask.sum(), 1)
+    # Where coordinates of poses are among the channels, how their errors are left is not told.
+    is_mixed = problem.predict.row_unknowns and slopes.shape[1] == len(problem.sigma)
+    shares = _shares_left(problem, model) if is_mixed else None
+    return gain_beside_drift(before, after, slopes, own, free, shares)
 
 
 def gain_beside_drift(
-    before: FloatArray, after: FloatArray, slopes: FloatArray, own: BoolArray, free: float = 1.0
+    before: FloatArray,
+    after: FloatArray,
+    slopes: FloatArray,
+    own: BoolArray,
+    free: float = 1.0,
+    shares: FloatArray | None = None,
 ) -> float:
     """Return what an effect takes off the sum of squares, in a noise that may drift.
 
@@ -71,16 +83,26 @@ def gain_beside_drift(
         Which of them are the effect's.
     free : float
         Share of the readings that are left to test the model.
+    shares : array (n_rows, n_channels, n_channels), optional
+        What is left in each channel of an error of each, where rows have unknowns of their own;
+        all of it, and in its own channel, if not given.
     """
     is_read = np.isfinite(before) & np.isfinite(after)
     slopes = np.where(is_read[..., None], slopes, 0.0)
     scale = np.linalg.norm(slopes, axis=(0, 1))
     slopes = slopes / np.where(scale > 0.0, scale, 1.0)
     residuals = np.where(is_read[..., None], np.stack([after, before], axis=-1), 0.0)
-    decay, share, variance = _noise_of(residuals[..., 0], slopes, is_read, free)
+    left_of = np.full(is_read.shape[1], free)
+    if shares is not None:  # of the variance, in rows that were fitted
+        kept = np.sum(shares[np.flatnonzero(is_read.any(axis=1))] ** 2, axis=-1)
+        left_of = np.maximum(kept.mean(axis=0), _LEAST_LEFT)
+    decay, share, variance = noise = _noise_of(residuals[..., 0], slopes, is_read, left_of)
     columns = np.concatenate([residuals, slopes], axis=-1)
-    steps = _innovations(columns, is_read, decay, share)
-    white = np.stack([step / np.sqrt(variance)[:, None] for step, _ in steps])
+    if shares is None:
+        steps = _innovations(columns, is_read, decay, share)
+        white = np.stack([step / np.sqrt(variance)[:, None] for step, _ in steps])
+    else:
+        white = _shared_innovations(columns, is_read, shares, noise)
     flat = white.reshape(-1, columns.shape[-1])
     others = orthonormal(flat[:, 2:][:, ~own])
     after_white, before_white, *_ = beside(others, flat).T
@@ -93,10 +115,61 @@ def gain_beside_drift(
     return gain / max(float(inflation), 1.0)
 
 
+def _shares_left(problem: Problem, model: Fit) -> FloatArray:
+    """Return what is left in each channel of an error of each (n_rows, n_channels, n_channels).
+
+    What is unknown in a row takes up a part of the errors of its readings, another one in each
+    pose: as if a sensor that drifts slowly were off by another amount in each.
+    """
+    machine, known = problem.predict.machine, [setting.effect for setting in model.settings]
+    zeros = [e for zero in (length_offset, tension_bias) for e in zero.EFFECT.on(machine)]
+    further = [e for e in zeros if e not in known]
+    effects = [*known, *further]
+    at_zero = [e.neutral[p.name] for e in further for p in e.parameters]
+    slopes = jacobian(problem, effects, np.concatenate([model.vector, at_zero]))
+    places = {
+        s.effect.key: place for s, place in with_places([Setting(e, e.neutral) for e in effects])
+    }
+    columns = np.concatenate([slopes[..., places[e.key]] for e in zeros], axis=-1)
+    return np.asarray(np.nan_to_num(columns) * problem.sigma)
+
+
+def _shared_innovations(
+    columns: FloatArray,
+    is_read: BoolArray,
+    shares: FloatArray,
+    noise: tuple[FloatArray, FloatArray, FloatArray],
+) -> FloatArray:
+    """Return what each row adds to those before it, made white, where it holds errors mixed.
+
+    A Kalman filter whose state is the lasting error of each sensor. What is left of a row has fewer
+    dimensions than channels; those that it lacks are 0.
+    """
+    decay, share, variance = noise
+    stationary = share * variance
+    foretold, doubt = np.zeros(columns.shape[1:]), np.diag(stationary)
+    white = np.zeros_like(columns)
+    for k, (row, read) in enumerate(zip(columns, is_read, strict=True)):
+        left, size, _ = np.linalg.svd(np.where(read[:, None], shares[k], 0.0))
+        basis = left[:, size > _LEAST_LEFT]
+        mixing = basis.T @ np.where(read[:, None], shares[k], 0.0)
+        step = basis.T @ row - mixing @ foretold
+        covariance = mixing @ (doubt + np.diag((1.0 - share) * variance)) @ mixing.T
+        white[k, : len(step)] = np.linalg.solve(np.linalg.cholesky(covariance), step)
+        weight = np.linalg.solve(covariance, mixing @ doubt).T
+        foretold = decay[:, None] * (foretold + weight @ step)
+        doubt = decay[:, None] * (doubt - weight @ mixing @ doubt) * decay
+        doubt += np.diag((1.0 - decay**2) * stationary)
+    return white
+
+
 def _noise_of(
-    residual: FloatArray, slopes: FloatArray, is_read: BoolArray, free: float
+    residual: FloatArray, slopes: FloatArray, is_read: BoolArray, free: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return decay, lasting share and variance of the noise of each channel (n_channels,)."""
+    """Return decay, lasting share and variance of the noise of each channel (n_channels,).
+
+    ``free`` is the share of the variance that the row's unknowns left (n_channels,).
+    """
     n_rows, n_channels, n_parameters = slopes.shape
     bases, is_used = np.zeros_like(slopes), np.zeros((n_channels, n_parameters), dtype=np.bool_)
     for channel in range(n_channels):
