@@ -10,8 +10,6 @@ from designer.explore.question import Question
 
 _OLD_MS = 200
 """A shorter time of an older state is no matter: answers come many times a second."""
-_TIMER_S = 0.01
-"""Timers of Qt are no more exact."""
 
 
 class Ages(QObject):
@@ -24,13 +22,13 @@ class Ages(QObject):
         super().__init__()
         self._states: dict[str, object] = {}
         self._old_since_s: dict[str, float] = {}
-        self._timer = QTimer(self, singleShot=True, interval=_OLD_MS)
-        self._timer.timeout.connect(self.changed)
+        self._timer = QTimer(self, singleShot=True)
+        self._timer.timeout.connect(self._tell)
 
     @property
     def outdated(self) -> frozenset[str]:
         """What is of an older state, and has been for a while."""
-        before_s = time.monotonic() + _TIMER_S - _OLD_MS * 1e-3
+        before_s = time.monotonic() - _OLD_MS * 1e-3
         since = self._old_since_s.items()
         return frozenset(aspect for aspect, since_s in since if since_s <= before_s)
 
@@ -56,7 +54,13 @@ class Ages(QObject):
             self._old_since_s.pop(aspect, None)
         elif aspect not in self._old_since_s:
             self._old_since_s[aspect] = time.monotonic()
-            self._timer.start()
+            self._timer.start(_OLD_MS)
+
+    def _tell(self) -> None:
+        """Say what is old by now, and wait for the rest: a timer may come a little early."""
+        self.changed.emit()
+        if len(self.outdated) < len(self._old_since_s):
+            self._timer.start(_OLD_MS // 10)
 
     def forget(self) -> None:
         """Take in that nothing is shown any more."""

@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog, QListWidget, QMessageBox, QPushButton
-from window_driver import Driver, small_yard
+from window_driver import LONGEST_MS, Driver, small_yard
 
 BUTTON = QMessageBox.StandardButton
 
@@ -184,7 +184,7 @@ def test_a_file_that_another_program_changes_is_told_of(yard: Driver) -> None:
     text = file.read_text(encoding="utf-8").replace("180 kg\n", "185 kg\n")
     file.write_text(text, encoding="utf-8")
     yard.bot.waitUntil(
-        lambda: yard.window.findChild(QPushButton, "notice Reload") is not None, timeout=60_000
+        lambda: yard.window.findChild(QPushButton, "notice Reload") is not None, timeout=LONGEST_MS
     )
     yard.press("notice Reload")
     assert yard.session.study.robot.platform.mass_kg == 185.0
@@ -205,7 +205,7 @@ def test_closing_in_the_middle_of_work_does_not_hang(empty: Driver, tmp_path: Pa
     text = file.read_text(encoding="utf-8").replace("samples: 600", "samples: 3000000")
     file.write_text(text, encoding="utf-8")
     empty.window.files.open(file)
-    empty.bot.waitUntil(lambda: "worst" in empty.window.live.busy, timeout=60_000)
+    empty.bot.waitUntil(lambda: "worst" in empty.window.live.busy, timeout=LONGEST_MS)
     empty.press("full selection")
     start = time.monotonic()
     told = empty.answer(BUTTON.Yes)
@@ -230,7 +230,7 @@ def test_leaving_during_an_export_is_asked_about(
     assert told == ["The export is not finished. End it?"]
     assert yard.window.pages.currentWidget() is yard.window.start
     assert yard.window.live.is_at_rest
-    yard.bot.waitUntil(lambda: not list(tmp_path.glob("r/*")), timeout=60_000)
+    yard.bot.waitUntil(lambda: not list(tmp_path.glob("r/*")), timeout=LONGEST_MS)
 
 
 def test_a_value_that_makes_every_pose_impossible_is_shown(yard: Driver) -> None:

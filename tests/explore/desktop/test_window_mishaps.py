@@ -11,7 +11,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QListWidget, QMessageBox
 from test_window_compare import built_yard
-from window_driver import Driver, small_yard
+from window_driver import LONGEST_MS, Driver, small_yard
 
 from designer.plugins.find import find_plugins
 
@@ -90,7 +90,7 @@ def test_closing_in_the_middle_of_long_work_loses_nothing(
         empty.keys("Ctrl+R")
     kind = {"report": "export", "selection": "select", "diagnosis": "diagnose"}[work]
     helper = window.live._worker._helpers[kind]
-    empty.bot.waitUntil(lambda: helper._process is not None, timeout=60_000)
+    empty.bot.waitUntil(lambda: helper._process is not None, timeout=LONGEST_MS)
     process = helper._process
     told = empty.answer(BUTTON.Yes, BUTTON.Save)
     start = time.monotonic()

@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QLabel, QMenu, QTableView
-from window_driver import LEFT, Driver
+from window_driver import LEFT, LONGEST_MS, Driver
 
 from designer.explore.question import Long
 from designer.sweep.store import read_store
@@ -32,7 +32,7 @@ def choose(driver: Driver, entry: str) -> None:
     """Click on an entry of the menu of tools."""
     bar, menu = driver.window.menuBar(), driver.find(QMenu, "tools menu")
     driver.click(bar, bar.actionGeometry(menu.menuAction()).center())
-    driver.bot.waitUntil(menu.isVisible, timeout=60_000)
+    driver.bot.waitUntil(menu.isVisible, timeout=LONGEST_MS)
     action = driver.window.menus.actions[entry]
     QTest.mouseClick(menu, LEFT, pos=menu.actionGeometry(action).center())
 
@@ -88,7 +88,7 @@ def test_optimisation_tells_of_changes_made_meanwhile(
     written(tmp_path, OPTIMISATION, monkeypatch)
     yard.keys("Ctrl+Shift+O")
     helper = yard.window.live._worker._helpers["optimise"]
-    yard.bot.waitUntil(lambda: yard.window.status.long._bar.maximum() > 0, timeout=60_000)
+    yard.bot.waitUntil(lambda: yard.window.status.long._bar.maximum() > 0, timeout=LONGEST_MS)
     yard.type_into("entry robot.platform.mass", "190 kg")
     yard.rest()
     assert helper._process is not None
@@ -107,7 +107,7 @@ def test_optimisation_is_cancelled(
 ) -> None:
     written(tmp_path, OPTIMISATION.replace("12", "100000"), monkeypatch)
     yard.keys("Ctrl+Shift+O")
-    yard.bot.waitUntil(lambda: yard.window.status.long._bar.maximum() > 0, timeout=60_000)
+    yard.bot.waitUntil(lambda: yard.window.status.long._bar.maximum() > 0, timeout=LONGEST_MS)
     yard.press("cancel")
     yard.rest()
     assert not yard.window.status.long.isVisible()

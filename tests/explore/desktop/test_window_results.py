@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from PySide6.QtWidgets import QLabel, QTableView
-from window_driver import Driver
+from window_driver import LONGEST_MS, Driver
 
 from designer.explore import worker
 
@@ -83,7 +83,7 @@ def test_results_of_an_older_state_are_grey(yard: Driver, monkeypatch: pytest.Mo
     def held_back(answer: Any) -> Any:
         def wait(*options: Any, **named: Any) -> Any:
             waits.set()
-            goes_on.wait(60.0)
+            goes_on.wait(LONGEST_MS / 1e3)
             return answer(*options, **named)
 
         return wait
@@ -93,8 +93,8 @@ def test_results_of_an_older_state_are_grey(yard: Driver, monkeypatch: pytest.Mo
     assert saturation(yard) > 60
     colours = yard.picture(results[1])
     yard.type_into("entry robot.platform.mass", "190 kg")
-    assert waits.wait(30.0)
-    yard.bot.waitUntil(lambda: bool(results[0].property("old")), timeout=30_000)
+    assert waits.wait(LONGEST_MS / 1e3)
+    yard.bot.waitUntil(lambda: bool(results[0].property("old")), timeout=LONGEST_MS)
     assert all(one.property("old") for one in results)
     assert (yard.picture(results[1]) != colours).any()
     assert legend.texts[1].endswith("of an older state")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QComboBox, QTableView
-from window_driver import Driver
+from window_driver import LONGEST_MS, Driver
 
 from designer.explore.question import Rope
 from designer.report.design.contexts import proof_statement
@@ -96,7 +96,7 @@ def test_the_whole_selection_can_be_cancelled(yard: Driver) -> None:
     yard.type_into("entry workspace.samples", "2000000")
     yard.press("full selection")
     yard.press("cancel")
-    yard.bot.waitUntil(lambda: "select" not in yard.window.live.busy, timeout=60_000)
+    yard.bot.waitUntil(lambda: "select" not in yard.window.live.busy, timeout=LONGEST_MS)
     assert not yard.window.status.long.isVisible()
     assert not yard.window.live.answers["ropes"].is_final
     yard.keys("Ctrl+Z")

@@ -34,7 +34,7 @@ from designer.resources import example_file  # noqa: E402
 Some = TypeVar("Some", bound=QObject)
 _RGB = QImage.Format.Format_RGB888
 LEFT = Qt.MouseButton.LeftButton
-LONGEST_MS = 120_000
+LONGEST_MS = 600_000  # a guard against what never ends: beside other work a step takes minutes
 
 
 class Driver:
@@ -50,7 +50,7 @@ class Driver:
         with bot.waitExposed(self.window):
             self.window.show()
         self.window.activateWindow()  # without a window manager nobody else does it
-        bot.waitUntil(self.window.isActiveWindow, timeout=60_000)
+        bot.waitUntil(self.window.isActiveWindow, timeout=LONGEST_MS)
 
     def open(self, study: str | Path) -> None:
         """Open a shipped study by its name, or a file, and wait for all answers."""
@@ -72,9 +72,14 @@ class Driver:
 
     def rest(self) -> None:
         """Wait until everything is answered and drawn."""
+
+        def answered() -> None:
+            live = self.window.live
+            assert live.is_at_rest, f"waits for {sorted(live.busy) or 'a timer'}"
+
         calm = 0
         while calm < 3:
-            self.bot.waitUntil(lambda: self.window.live.is_at_rest, timeout=LONGEST_MS)
+            self.bot.waitUntil(answered, timeout=LONGEST_MS)
             self.bot.wait(20)
             calm = calm + 1 if self.window.live.is_at_rest else 0
 
@@ -130,7 +135,7 @@ class Driver:
         """Press a shortcut or a key, such as ``Ctrl+Z``, where the focus is."""
         if QApplication.activeWindow() is None:  # after a dialog
             self.window.activateWindow()
-            self.bot.waitUntil(self.window.isActiveWindow, timeout=60_000)
+            self.bot.waitUntil(self.window.isActiveWindow, timeout=LONGEST_MS)
         widget = QApplication.focusWidget() or self.window
         QTest.keySequence(widget, keys)
 
