@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from zlib import crc32
 
 import numpy as np
 import pytest
@@ -38,9 +39,24 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> _Together | 
     return _Together(config, log) if config.getvalue("dist") == "loadfile" else None
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Let a run take a part of the tests alone."""
+    parser.addoption("--part", default="1/1", metavar="K/N", help="one part of all tests")
+
+
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Make the cases slow that come after those of ``cases_by_default``."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Make the cases slow that come after those of ``cases_by_default``; keep the part asked for.
+
+    All cases of a test are in one part, which nothing but its name decides.
+    """
+    part, n_parts = map(int, config.getoption("--part").split("/"))
+
+    def is_in(item: pytest.Item) -> bool:
+        return crc32(item.nodeid.partition("[")[0].encode()) % n_parts == part % n_parts
+
+    config.hook.pytest_deselected(items=[item for item in items if not is_in(item)])
+    items[:] = filter(is_in, items)
     cases: Counter[str] = Counter()
     for item in items:
         marker = item.get_closest_marker("cases_by_default")

@@ -30,6 +30,7 @@ def results(tmp_path_factory) -> tuple[dict, dict]:
     return found[0], found[1]
 
 
+@pytest.mark.slow
 def test_the_field_that_differs_and_what_follows_from_it(results) -> None:
     found = compare(*results)
     assert [(one.path, one.a, one.b) for one in found.inputs] == [

@@ -32,6 +32,7 @@ def poses(tmp_path: Path, text: str = POSES) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_the_chosen_rope_at_each_pose(tmp_path, designer) -> None:
     found = designer("lengths", str(study(tmp_path)), "--poses", str(poses(tmp_path)))
     assert found.status == 0, found.err
@@ -63,6 +64,7 @@ def test_the_chosen_rope_at_each_pose(tmp_path, designer) -> None:
             assert float(row[f"tension_{k + 1}_N"]) == pytest.approx(tension[0], rel=1e-8)
 
 
+@pytest.mark.slow
 def test_at_the_worst_pose_it_is_the_reports_tension(tmp_path) -> None:
     analysis = door.analyse(door.read_study(study(tmp_path)))
     assert analysis.selection is not None
@@ -139,6 +141,7 @@ def test_a_planar_robot_stays_in_its_plane(tmp_path) -> None:
     assert ":4: rx_rad: row 3 turns the platform out of its plane" in second
 
 
+@pytest.mark.slow
 def test_load_cases_are_said_to_be_left_out(tmp_path, designer) -> None:
     cases = "load_cases: [{name: hoisting, dynamic_factor: 1.1}]\n"
     text = STUDY + WORKSPACE.replace("samples: 300", "samples: 50") + cases
@@ -175,6 +178,7 @@ PATH = "time_s,x_m,y_m,z_m\n0,250,200,-100\n60,240,180,-90\n"
 ALONG = "workspace: {path: path.csv}\nselection: {}\n"
 
 
+@pytest.mark.slow
 def test_set_points_along_the_path_of_the_study(tmp_path, designer) -> None:
     (tmp_path / "path.csv").write_text(PATH)
     file = study(tmp_path, STUDY + ALONG)

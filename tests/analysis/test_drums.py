@@ -137,6 +137,7 @@ def test_fleet_angle_is_that_at_a_flange(tmp_path: Path) -> None:
     assert (fleet.unit, fleet.holds, analysis.answer) == ("deg", False, Answer.NO)
 
 
+@pytest.mark.slow
 def test_groups_and_the_family_are_spooled_as_well(tmp_path: Path) -> None:
     study = crane(drum_diameter=0.12, layers=2, drum=DRUM)
     groups = {"first": [1], "others": [2, 3]}
@@ -167,6 +168,7 @@ def test_groups_and_the_family_are_spooled_as_well(tmp_path: Path) -> None:
     assert wider.demand == pytest.approx(np.ptp(lengths_m, axis=0).max(), rel=0.1)
 
 
+@pytest.mark.slow
 def test_page_and_file_tell_turns_and_layers(tmp_path: Path) -> None:
     analysis = analysed(crane(drum_diameter=0.12, layers=2, drum=DRUM), tmp_path)
     winches = json.loads(analysis.to_json())["winches"]

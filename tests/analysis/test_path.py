@@ -249,6 +249,7 @@ def test_winches_and_motors_against_what_they_do(tmp_path: Path) -> None:
     assert lines[0].startswith("load_case,time_s,x_m")
 
 
+@pytest.mark.slow
 def test_page_of_the_report(tmp_path: Path) -> None:
     rows = np.array([[5.0, 3.0, 4.0], [7.0, 4.0, 5.0], [6.0, 5.0, 3.0]])
     cases = [{"name": "empty", "mass": 120.0}, {"name": "windy", "wind": {"speed": 8.0}}]

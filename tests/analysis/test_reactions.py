@@ -94,6 +94,7 @@ def solve_study(tmp_path_factory: pytest.TempPathFactory) -> Solve:
     return cache(lambda name: analysed(STUDIES[name], tmp_path_factory.mktemp("study")))
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("name", EACH)
 def test_reactions_match_reference_and_add_up(name: str, solve_study: Solve) -> None:
     study = STUDIES[name]
@@ -163,6 +164,7 @@ def test_lost_cable_pulls_on_no_mast(tmp_path: Path) -> None:
         assert np.allclose(reaction.force_N, -rest.exit_pull_N[column], rtol=0, atol=margin)
 
 
+@pytest.mark.slow
 def test_files_and_page_have_every_reaction(solve_study: Solve) -> None:
     analysis = solve_study("crane, winches")
     rows = list(csv.DictReader(io.StringIO(reactions_csv(analysis.reactions))))

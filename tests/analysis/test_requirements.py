@@ -72,6 +72,7 @@ def test_a_failing_requirement_decides_then_an_open_one() -> None:
     assert answer_of([is_open, fails, holds]) is Answer.NO
 
 
+@pytest.mark.slow
 def test_limits_that_no_rope_meets_are_a_no(tmp_path: Path, solve: Solve) -> None:
     limits = "limits: {stiffness: 1 GN/m, excitation: [0.01 Hz, 1 kHz], drum_capacity: 1 m}"
     text = f"{CRANE}{REGION}selection: {{grades: [unirope-7x19-galvanised], {limits}}}\n"

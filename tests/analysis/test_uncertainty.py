@@ -78,6 +78,7 @@ def printed(grade: Grade, uncertainty: float = 0.15) -> Grade:
     return replace(grade, modulus=modulus)
 
 
+@pytest.mark.slow
 def test_a_payload_on_all_but_weightless_ropes_has_its_closed_form() -> None:
     # Tension is proportional to the payload: u = u0 p / b, and p - b / u0 is normal.
     grade = printed(rope("light", FINE, weight=1e-6), 0.0)

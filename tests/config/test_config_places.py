@@ -120,6 +120,7 @@ def test_a_search_keeps_to_the_law(study_of: StudyOf) -> None:
     assert worst.demand >= demand(dense).max() - 1e-12
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("seed", range(3))
 def test_a_free_orientation_is_as_good_as_brute_force(seed: int, study_of: StudyOf) -> None:
     rng = np.random.default_rng(seed)

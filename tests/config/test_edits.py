@@ -33,6 +33,7 @@ last: {}
 """
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("name", example_names())
 def test_every_value_put_in_as_it_stands_changes_nothing(name: str) -> None:
     text = example_file(name).read_text(encoding="utf-8")

@@ -152,6 +152,7 @@ def test_what_no_reading_tells_apart_has_no_deviation(tmp_path) -> None:
         assert np.isnan(each.influence) == (not each.is_settled)
 
 
+@pytest.mark.slow
 def test_a_page_tells_what_is_not_settled(tmp_path) -> None:
     found = diagnose(case(tmp_path, YARD3, ("anchors", "pose_frame")))
     write_diagnosis(found, tmp_path)

@@ -56,6 +56,7 @@ def test_drums_that_grow_are_found_as_such(robot, seed, unknown, tmp_path) -> No
     assert dict(found.skipped)["load_step"] == "needs more rows, or lengths that change more"
 
 
+@pytest.mark.slow
 def test_what_predicts_unseen_rows_as_well_is_a_rival(tmp_path) -> None:
     found = diagnosed(YARD3, "drum_scale", 5203, tmp_path, ("length_offset",))
     (finding,) = found.findings

@@ -84,6 +84,7 @@ def test_a_search_without_time_says_what_it_did_not_try(tmp_path) -> None:
     assert found.is_unexplained
 
 
+@pytest.mark.slow
 def test_time_may_end_between_two_rounds(tmp_path, monkeypatch) -> None:
     """What was found in the rounds before stays, and no claim is made on its rivals."""
     clock = Clock()

@@ -35,6 +35,7 @@ def config(folder, robot=YARD3, unknown=("anchors",), **noise):
     return path
 
 
+@pytest.mark.slow
 def test_promised_deviations_are_those_of_a_hundred_campaigns(tmp_path) -> None:
     study = read_study(config(tmp_path, unknown=("anchors", "length_offset")))
     cable = study.measurements.cable()

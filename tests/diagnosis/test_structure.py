@@ -19,6 +19,7 @@ def covariates_for(rng: np.random.Generator) -> dict[str, np.ndarray]:
     }
 
 
+@pytest.mark.slow
 def test_noise_has_structure_as_seldom_as_the_level_says() -> None:
     rng = np.random.default_rng(0)
     covariates = covariates_for(rng)

@@ -37,6 +37,7 @@ def test_cables_of_the_platforms_weight_are_no_finding(quantities, tmp_path) -> 
     assert found.to_dict()["balance"]["left_median"] < 1e-4
 
 
+@pytest.mark.slow
 def test_a_heavier_platform_is_found_with_its_weight(tmp_path) -> None:
     found = diagnose(case_with({"platform_mass": {"offset_kg": 2.5}}, tmp_path))
     assert [finding.effect.key for finding in found.findings] == ["platform_mass"]

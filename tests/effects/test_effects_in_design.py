@@ -130,6 +130,7 @@ def test_the_pose_is_sized_with_the_mass_of_the_section_found(tmp_path) -> None:
     assert diameter > 1.01 * float(bare.diameter_m)
 
 
+@pytest.mark.slow
 def test_the_worst_section_serves_every_pose_with_its_own_mass(iced: Analysis) -> None:
     assert iced.workspace is not None and iced.workspace.sagging is not None
     assert iced.section_m == pytest.approx(iced.workspace.sagging.diameter_m, rel=1e-7)

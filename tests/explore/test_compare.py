@@ -64,6 +64,7 @@ def test_a_heavier_load(few: Session) -> None:
     assert found.gained == ()
 
 
+@pytest.mark.slow
 def test_a_full_selection_and_a_quick_one_are_told_apart(few: Session) -> None:
     question = few.question()
     assert question is not None

@@ -63,6 +63,7 @@ def test_random_steps_are_undone_to_the_letter(name: str, example: Any) -> None:
     assert not session.redo_label
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("name", example_names())
 def test_each_field_is_put_back_alone(name: str, example: Any) -> None:
     rng, session = random.Random(name), example(name)

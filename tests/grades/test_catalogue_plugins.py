@@ -295,6 +295,7 @@ def test_markup_in_a_grade_is_listed_as_text(site, tmp_path, capsys, monkeypatch
     assert "[red]<b>7x19</b>" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_standard_output_works_after_a_loud_plugin(site, tmp_path):
     puts = "import ctypes; ctypes.CDLL(None).puts(b'from C'); " if os.name == "posix" else ""
     install_plugin(site, "acme-loud", hook(f"import os; os.system('echo child'); {puts}return []"))

@@ -35,6 +35,7 @@ def told(**environment: str) -> list[str]:
     ).stdout.split()
 
 
+@pytest.mark.slow
 def test_once_where_nothing_is_cached_and_never_after(tmp_path: Path) -> None:
     assert [told(NUMBA_CACHE_DIR=str(tmp_path)) for _ in range(2)] == [["compiling"], []]
 
@@ -73,6 +74,7 @@ def test_a_damaged_file_is_compiled_again(
         assert is_found()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="XDG folders")
 def test_it_is_kept_by_version_and_processor(tmp_path: Path) -> None:
     environment = {"NUMBA_CACHE_DIR": "", "XDG_CACHE_HOME": str(tmp_path)}

@@ -101,6 +101,7 @@ def test_no_design_that_holds_is_no_flat_optimum(tmp_path: Path) -> None:
     assert len(pictures(report)) == 1  # the robot: there is nothing to show of an objective
 
 
+@pytest.mark.slow
 def test_no_design_that_is_a_study_is_told_with_its_reason(tmp_path: Path) -> None:
     plan = OF_YARD.replace("width: {fields: {robot.anchors.0.0: -1, robot.anchors.1.0: 1}, ", "")
     plan = plan.replace("offset: [-1 m, 2 m]}", "workspace.region.z.*: [2 m, 3 m]")

@@ -33,6 +33,7 @@ def test_it_finds_what_symmetry_and_reason_say(tmp_path: Path) -> None:
     assert found.plan.variables[1].bound_at(height) == "upper"
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("seed", range(2))
 def test_no_point_of_a_grid_is_better(tmp_path: Path, seed: int) -> None:
     """Two variables against each other, the best inside: what rope there is goes out or up."""

@@ -64,6 +64,7 @@ def test_it_is_named_and_the_rest_works(site: Path, code: str, words: str) -> No
     assert catalogue.grade("acme-python").origin == "acme-good"
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize(
     "body",
     ["import re; re.match('(a+)+$', 'a' * 60 + 'b')", "import time; time.sleep(60)"],

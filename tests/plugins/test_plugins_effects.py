@@ -402,6 +402,7 @@ def test_the_commands_take_it_and_leave_it(site, tmp_path, capsys, monkeypatch) 
     assert line.startswith("study.yaml:7: effects.lost_ballast: unknown effect 'lost_ballast'")
 
 
+@pytest.mark.slow
 def test_readings_reach_a_plugin_as_arrays_that_it_cannot_spoil(site, tmp_path) -> None:
     law = "lambda r, v, m: (m.temperature_C.__setitem__(0, 1e9), r)[1]"
     item = f"replace(EFFECT, on_readings={law})"
@@ -415,6 +416,7 @@ def test_readings_reach_a_plugin_as_arrays_that_it_cannot_spoil(site, tmp_path) 
     assert "read-only" in found.study.known_effects.problems[0]
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize(
     ("changed", "said"),
     [

@@ -83,12 +83,13 @@ def balance(robot: Robot, cable: Cable, place: FloatArray, pull: FloatArray) -> 
 
 
 CASES = {
+    "four": (FOUR, ((30.0, 70.0), (20.0, 60.0), (-60.0, -30.0)), 0.0),
     "eight": (COGIRO, ((-2.0, 2.0), (-2.0, 2.0), (1.0, 2.5)), 0.3),
     "seven": (SEVEN, ((-1.0, 1.0), (-1.0, 1.0), (1.0, 2.5)), 0.3),
-    "four": (FOUR, ((30.0, 70.0), (20.0, 60.0), (-60.0, -30.0)), 0.0),
 }
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("case", list(CASES))
 def test_changes_lie_within_the_slopes(case: str) -> None:
     robot, sides, turn = CASES[case]

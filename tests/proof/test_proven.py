@@ -92,6 +92,7 @@ def test_what_is_shown_is_not_more_than_is_proved() -> None:
     assert proof_statement(partial).title == "Found, not proved: 99.9\u00a0% of the volume"
 
 
+@pytest.mark.slow
 def test_no_time_is_no_proof() -> None:
     told = analyse(_study(50, 0.0)).to_dict()["proof"]
     assert told["status"] == "off"

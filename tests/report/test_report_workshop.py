@@ -34,6 +34,7 @@ def tables(analysis: designer.Analysis) -> list[Grid]:
     return tables_of(section(Drawings(analysis), "workshop"))
 
 
+@pytest.mark.slow
 def test_the_lengths_are_those_of_the_chosen_rope(tmp_path) -> None:
     analysis = analysis_of(tmp_path, SELECTION)
     assert analysis.selection is not None
@@ -62,6 +63,7 @@ def test_the_lengths_are_those_of_the_chosen_rope(tmp_path) -> None:
     assert float(least) == pytest.approx(1e3 * ratio.minimum * chosen.size.diameter_m, abs=0.5)
 
 
+@pytest.mark.slow
 def test_groups_have_a_rope_each(tmp_path) -> None:
     analysis = analysis_of(tmp_path, GROUPS)
     assert analysis.groups is not None
@@ -73,6 +75,7 @@ def test_groups_have_a_rope_each(tmp_path) -> None:
     assert sum(int(row.cells[2]) for row in ropes.groups[0].rows) == 6
 
 
+@pytest.mark.slow
 def test_without_a_product_there_is_no_such_section(tmp_path) -> None:
     report = design_report(analysis_of(tmp_path, ""), draws=False)
     assert "workshop" not in [one.id for one in report.sections]

@@ -221,6 +221,7 @@ def test_a_lost_cable_is_told() -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_lost_cable_alone_needs_the_lengths_before_the_loss() -> None:
     study = study_of("yard", 20)
     assert study.workspace is not None

@@ -48,6 +48,7 @@ def largest_N(case: LoadCase, diameter_m: float) -> float:
     return max(largest)
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("case", CASES, ids=[case.name for case in CASES])
 def test_the_diameter_serves_and_a_thinner_one_does_not(case: LoadCase) -> None:
     need = family_need(AsBuilt(ROBOT), POINTS, FAMILY, case)

@@ -67,6 +67,7 @@ def workspace() -> Workspace:
     return Workspace(Prism.over(triangle, 40.0, (-200.0, -60.0)), samples=500)
 
 
+@pytest.mark.slow
 def test_optimum_over_a_sheave_is_as_strong_as_itself(fast_robot, workspace) -> None:
     selection = Selection(None, 2.0, sheave_diameter_m=0.2)
     grade = rope("a", [10.0, 20.0, 30.0, 40.0])

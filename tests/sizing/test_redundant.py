@@ -51,6 +51,7 @@ def optimality_of(robot, pose, material, diameter_m: float, force_x_N) -> tuple[
     return problem.violation(state, c), problem.gap(state, y, c)
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("weights", WEIGHTS)
 def test_random_poses_are_solved_and_optimal(weights) -> None:
     """The conditions are written down and evaluated by other code than the kernel's."""
@@ -241,6 +242,7 @@ def test_a_given_cable_is_pulled_as_evenly_as_can_be(weights) -> None:
 MIXED = Cables(tuple(steel(10.0).cable(0.004 if i % 2 else 0.006) for i in range(8)))
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("cable", [steel(30.0).cable(0.004), MIXED], ids=["one", "mixed"])
 def test_a_given_cables_utilisation_cannot_be_lowered(cable) -> None:
     poses = cogiro_poses(4, 12)

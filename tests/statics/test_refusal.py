@@ -142,6 +142,7 @@ def test_what_random_sagging_cables_hold_is_never_refused(kind) -> None:
     assert checked > 30
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("weights", [1.0, 60.0])
 def test_solved_poses_are_never_refused(weights) -> None:
     poses = anywhere(2500, 7)

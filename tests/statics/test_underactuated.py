@@ -88,7 +88,7 @@ def test_heavy_cables_on_a_large_robot() -> None:
     assert found.closure_residual_m().max() < 1e-10
 
 
-@pytest.mark.cases_by_default(5)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(20))
 def test_random_machines_at_rest(seed) -> None:
     machine, length, position = random_machine(np.random.default_rng(seed))

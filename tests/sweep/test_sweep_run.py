@@ -137,7 +137,8 @@ def test_what_is_slow_and_changes_no_answer_is_solved_where_it_is_kept(tmp_path:
         assert (result["pose"]["rest"] is not None) is bool(result["verification"]) is solved
 
 
-@pytest.mark.parametrize("top", ["7", pytest.param("10.5", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("top", ["7", "10.5"])
 def test_what_is_kept_is_what_the_whole_result_holds(top: str, tmp_path: Path) -> None:
     """What is left out because nothing kept takes it changes nothing that is kept."""
     region = REGION.replace("z: [1, 7]", f"z: [1, {top}]")

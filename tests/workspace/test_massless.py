@@ -70,6 +70,7 @@ def test_where_straight_cables_hold_everything_their_worst_pose_is_told() -> Non
     assert found.max_tension_N == pytest.approx(float(again))
 
 
+@pytest.mark.slow
 def test_it_is_of_the_poses_that_count(fast_robot, steel) -> None:
     triangle = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
     region = Prism.over(triangle, 0.0, (-200.0, -40.0))

@@ -188,7 +188,7 @@ def test_a_search_that_meets_what_nothing_holds_ends_without_the_others() -> Non
     assert first.demand == third.demand == pytest.approx(10.0)
 
 
-@pytest.mark.cases_by_default(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("curved", "level"),
     [(0, 5.0), (1, 5.0), (2, 5.0), (0, -5.0)],
@@ -289,6 +289,7 @@ def test_search_meets_the_infeasible_part_between_samples(fast_robot, steel) -> 
     assert found.infeasible_example_m is not None
 
 
+@pytest.mark.slow
 def test_poses_with_hanging_cables_can_be_left_out(fast_robot, steel) -> None:
     found = map_workspace(fast_robot, paper_workspace(0.0, hangs_below="exclude"), steel)
     assert found.is_feasible
@@ -357,6 +358,7 @@ def test_the_search_slides_along_what_does_not_count() -> None:
     assert worst_of(box, behind_a_plane, nowhere).demand == pytest.approx(along.max(), rel=1e-7)
 
 
+@pytest.mark.slow
 def test_among_places_of_which_few_count_the_best_that_was_asked_is_found() -> None:
     box = Space(Prism.box((0, 1), (0, 1), (0, 1)), Orientations())
     asked = [-np.inf]

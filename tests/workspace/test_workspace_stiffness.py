@@ -15,6 +15,7 @@ from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.workspace.stiffness import survey_stiffness
 
 
+@pytest.mark.slow
 def test_softest_and_stiffest_of_the_samples(fast_robot: Robot, steel) -> None:
     region = Prism.over(fast_robot.exit_points_m, 20.0, (-150.0, -50.0))
     found = survey_stiffness(fast_robot, Workspace(region, samples=400), steel.cable(0.04))
