@@ -1,4 +1,4 @@
-"""Stiffness and clearance over a level section through the middle of the region."""
+"""Stiffness, frequency and clearance over a level section through the middle of the region."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from designer.analysis.analyse import Analysis
 from designer.arrays import BoolArray, FloatArray
 from designer.model.robot import Poses
 from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.modes import knows_inertia, platform_frequencies_Hz
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.workspace.clearance import smallest_clearance
 from designer.workspace.demand import is_left_out
@@ -44,6 +45,19 @@ def displacement_section(analysis: Analysis) -> SectionMap | None:
         return None
     displacement = largest_displacement_m_per_N(statics)
     return _section(analysis, statics, displacement, np.isnan(displacement))
+
+
+def frequency_section(analysis: Analysis) -> SectionMap | None:
+    """Return the lowest frequency [Hz]; None without an area or the platform's inertia."""
+    robot = analysis.built.robot
+    if not knows_inertia(robot, robot.platform):
+        return None
+    statics = _statics(analysis, 16, 60)
+    if statics is None or analysis.qualities is None:
+        return None
+    density = analysis.qualities.cable.cable.linear_density_kg_per_m
+    lowest_Hz = platform_frequencies_Hz(statics, robot.platform, density)[..., 0]
+    return _section(analysis, statics, lowest_Hz, ~(lowest_Hz > 0.0))
 
 
 def clearance_section(analysis: Analysis) -> SectionMap | None:

@@ -14,7 +14,6 @@ from designer.documents.plain import csv_text
 from designer.errors import Fault, InputError, OutputError
 from designer.explore.here import CableHere, here
 from designer.explore.map import MapAnswer, map_answer
-from designer.explore.quantities import CHEAP
 from designer.explore.question import Question
 from designer.explore.reading import text_of
 from designer.explore.ropes import RopeRow, Ropes, quick_ropes
@@ -32,6 +31,7 @@ COLUMNS = {
     "governing": "governing_cable",
     "sag": "sag_over_chord",
     "stiffness": "stiffness_N_per_m",
+    "frequency": "lowest_frequency_Hz",
     "verdict": "verdict",
     "left_out": "left_out",
     "unserved": "unserved",
@@ -61,7 +61,7 @@ _ROPE_COLUMNS = {
     "is_searched": "verification.is_refined",
 }
 """Of each column of the table of ropes, what a row has there."""
-_ALL = CHEAP | {"stiffness", "unserved"}
+_ALL = frozenset(COLUMNS)
 
 
 def export(

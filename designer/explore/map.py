@@ -10,7 +10,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.explore.quantities import BY_KEY, CHEAP
 from designer.explore.question import Question, Rope, RopePerCable
-from designer.model.cable import Cable, Cables
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable, Cables
 from designer.model.load_case import STATIC
 from designer.model.region import Region
 from designer.model.rings import every_second
@@ -23,6 +23,7 @@ from designer.selection.cases import Cases, governing, searched_all, together
 from designer.selection.groups.trials import verify_groups
 from designer.selection.verify import Verification
 from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.modes import platform_frequencies_Hz
 from designer.statics.shape import sag_ratio
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.workspace.demand import demand_of, in_worst_turn, is_left_out, size_worst
@@ -186,6 +187,12 @@ def _values(
         softness = largest_displacement_m_per_N(statics)
         stays = np.where(np.isnan(softness), 0.0, 1.0 / softness)
         found["stiffness"] = np.where(statics.is_solved, stays, np.nan)
+    if "frequency" in keys:
+        density: FloatArray | float = statics.weight_N_per_m / STANDARD_GRAVITY_M_PER_S2
+        if cable is not None:
+            density = cable.linear_density_kg_per_m
+        platform = question.robot.platform
+        found["frequency"] = platform_frequencies_Hz(statics, platform, density)[..., 0]
     return found
 
 

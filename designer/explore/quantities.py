@@ -84,6 +84,14 @@ QUANTITIES = (
         "platform free to turn. Zero where it would not stay.",
     ),
     Quantity(
+        "frequency",
+        "Lowest frequency",
+        "Hz",
+        1.0,
+        "Lowest natural frequency of the platform with the cables' share of its mass, winches "
+        "braked. Zero where it would not stay; not known of a body whose inertia is not given.",
+    ),
+    Quantity(
         "verdict",
         "Verdict",
         "",
@@ -95,8 +103,8 @@ QUANTITIES = (
 """In the order in which they are offered; the first comes first."""
 
 BY_KEY = {one.key: one for one in QUANTITIES}
-CHEAP = frozenset(BY_KEY) - {"stiffness"}
-"""What every map has; the stiffness takes longer, and is there where it is asked for."""
+CHEAP = frozenset(BY_KEY) - {"stiffness", "frequency"}
+"""What every map has; the others take longer, and are there where they are asked for."""
 
 
 def category_labels(key: str, n_cables: int) -> dict[int, str]:

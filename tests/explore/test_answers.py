@@ -24,10 +24,12 @@ from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.plugins.find import Plugins
 from designer.proof.prove import WITHIN
+from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
+from designer.statics.modes import platform_modes
 
 WIRE = "unirope-7x19-galvanised"
-ALL = CHEAP | {"stiffness", "unserved"}
+ALL = CHEAP | {"stiffness", "frequency", "unserved"}
 
 
 def question_of(session: Session) -> Question:
@@ -219,7 +221,8 @@ def test_every_value_of_the_map_with_a_rope_is_that_of_its_pose(
 ) -> None:
     session: Session = example(name)
     session.choose(Rope(WIRE, "5/32 in"))
-    found = map_answer(question_of(session), quantities=CHEAP | {"stiffness"})
+    found = map_answer(question_of(session), quantities=CHEAP | {"stiffness", "frequency"})
+    robot = question_of(session).robot
     rng = np.random.default_rng(3)
     assert grids == set(found.grids)
     for part, grid in found.grids.items():
@@ -230,10 +233,31 @@ def test_every_value_of_the_map_with_a_rope_is_that_of_its_pose(
         assert one.max_tension_N == pytest.approx(values["tension"][i, j], rel=1e-9)
         assert one.diameter_m == pytest.approx(values["diameter"][i, j], rel=1e-9)
         assert one.stiffness_N_per_m == pytest.approx(values["stiffness"][i, j], rel=1e-6)
+        lowest_Hz = values["frequency"][i, j]
+        if robot.is_point_mass:
+            cable = question_of(session).cable
+            alone = solve_sagging(robot, question_of(session).pose, cable)
+            lowest = platform_modes(alone, robot.platform, cable.linear_density_kg_per_m)[0]
+            assert lowest_Hz == pytest.approx(lowest.frequency_Hz, rel=1e-6)
+            without_cables = np.sqrt(one.stiffness_N_per_m / robot.platform.mass_kg) / (2.0 * np.pi)
+            assert 0.0 < lowest_Hz <= without_cables * (1.0 + 1e-9)
+        else:
+            assert np.isnan(lowest_Hz)  # its inertia is not given
         sag = max(cable.sag_m / cable.chord_m for cable in one.cables)
         assert sag == pytest.approx(values["sag"][i, j], rel=1e-6)
         used = [cable.utilisation for cable in one.cables]
         assert used[int(values["governing"][i, j]) - 1] == pytest.approx(max(used), rel=1e-9)
+
+
+def test_without_a_rope_the_frequency_is_that_of_the_thinnest_cable(yard: Session) -> None:
+    question = question_of(yard)
+    found = map_answer(question, quantities=CHEAP | {"frequency"})
+    grid, lowest_Hz = found.grids["slice"], found.on("slice", "frequency")
+    sizing = size_poses(question.robot, Poses.at(grid[3, 5, :3]), question.material)
+    assert sizing.diameter_m == pytest.approx(found.on("slice", "diameter")[3, 5], rel=1e-9)
+    density = question.material.cable(float(sizing.diameter_m)).linear_density_kg_per_m
+    lowest = platform_modes(sizing.statics, question.robot.platform, density)[0]
+    assert lowest_Hz[3, 5] == pytest.approx(lowest.frequency_Hz, rel=1e-6)
 
 
 def test_the_coarse_map_is_every_second_point_of_the_fine_one(example: Any) -> None:
@@ -252,7 +276,7 @@ def test_only_what_is_asked_for(yard: Session) -> None:
     found = map_answer(question_of(yard), slice_share=1.0)
     assert np.allclose(found.grids["slice"][..., 2], 8.5)
     assert "stiffness" not in found.values
-    assert {one.key for one in QUANTITIES} - {"stiffness"} <= set(found.values)
+    assert {one.key for one in QUANTITIES} - {"stiffness", "frequency"} <= set(found.values)
 
 
 @pytest.mark.slow

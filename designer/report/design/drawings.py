@@ -23,7 +23,12 @@ from designer.report.figures.colours import DIAMETER, RATIO, UTILISATION, tensio
 from designer.report.figures.groups_plan import groups_plan
 from designer.report.figures.interactive import workspace_scene_html
 from designer.report.figures.scenes import cover_scene, robot_scene, usable_scene, workspace_scene
-from designer.report.figures.sections import clearance_map, slice_panels, stiffness_map
+from designer.report.figures.sections import (
+    clearance_map,
+    frequency_map,
+    slice_panels,
+    stiffness_map,
+)
 from designer.report.figures.stage import Image
 from designer.report.phrases import INPUT_NAMES, LITTLE, sag_matters
 
@@ -87,6 +92,11 @@ class Drawings:
     def stiffness(self) -> str | None:
         """The displacement under a force, as a map in plan."""
         return stiffness_map(self.analysis)
+
+    @chart
+    def frequency(self) -> str | None:
+        """The lowest frequency, as a map in plan."""
+        return frequency_map(self.analysis)
 
     @chart
     def clearance(self) -> str | None:

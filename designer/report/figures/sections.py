@@ -11,7 +11,12 @@ import numpy as np
 from designer.analysis.analyse import Analysis
 from designer.analysis.field import RegionField
 from designer.analysis.maps import WorkspaceMaps
-from designer.analysis.section import SectionMap, clearance_section, displacement_section
+from designer.analysis.section import (
+    SectionMap,
+    clearance_section,
+    displacement_section,
+    frequency_section,
+)
 from designer.arrays import BoolArray, FloatArray
 from designer.report import format as fmt
 from designer.report.figures import canvas, palette
@@ -70,6 +75,14 @@ def stiffness_map(analysis: Analysis) -> str | None:
     scaled = replace(section, values=1e6 * section.values)
     label = "largest displacement [mm/kN]"
     return section_map(scaled, "stiffness", label, "not held, or not stably")
+
+
+def frequency_map(analysis: Analysis) -> str | None:
+    """Return a map of the lowest frequency; None without an area or the platform's inertia."""
+    section = frequency_section(analysis)
+    if section is None:
+        return None
+    return section_map(section, "frequency", "lowest frequency [Hz]", "not held, or not stably")
 
 
 def clearance_map(analysis: Analysis) -> str | None:
