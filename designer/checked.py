@@ -21,8 +21,12 @@ class Number:
     most: float = np.inf
     finite: bool = True
 
-    def require(self, name: str, value: float) -> None:
-        """Raise ValueError, with one sentence, unless a value is such a number."""
+    def require(self, name: str, value: float | FloatArray) -> None:
+        """Raise ValueError, with one sentence, unless a value is such a number, or all of it."""
+        if isinstance(value, np.ndarray):
+            for each in value.ravel().tolist():
+                self.require(name, each)
+            return
         if not value > self.above and self.above > -np.inf:
             raise ValueError(f"{name} must be above {self.above:g}, not {value:g}")
         if not value >= self.least:
@@ -36,6 +40,7 @@ class Number:
 FINITE = Number()
 Finite = Annotated[float, FINITE]
 Positive = Annotated[float, Number(above=0.0)]
+Positives = Annotated[float | FloatArray, Number(above=0.0)]
 NotNegative = Annotated[float, Number(least=0.0)]
 Factor = Annotated[float, Number(least=1.0)]
 Efficiency = Annotated[float, Number(above=0.0, most=1.0)]

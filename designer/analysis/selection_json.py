@@ -62,7 +62,7 @@ def candidate_dict(candidate: Candidate, outcome: GradeOutcome) -> Json:
         "efficiency": candidate.efficiency,
         "allowable_tension_N": cable.allowable_tension_N,
         "linear_mass_kg_per_m": size.linear_density_kg_per_m,
-        "as_built_linear_mass_kg_per_m": cable.linear_density_kg_per_m,
+        "as_built_linear_mass_kg_per_m": cable.mean_density_kg_per_m,
         "axial_stiffness_N": cable.axial_stiffness_N,
         "total_mass_kg": candidate.total_mass_kg,
         "drum_diameter_m": candidate.figures.drum_diameter_m,

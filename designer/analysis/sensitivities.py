@@ -179,9 +179,9 @@ def _slopes_at(
     yield "payload", float(slopes.load @ (heavier - load_wrench_N(loaded.robot, pose)[0]))
     yield "region", float(slopes.position_per_m @ region.outward(pose.position_m[0]))
     for name, cables, rope in ropes:
-        load = _cable_load(with_density(rope, 2.0)) - _cable_load(rope)
+        load = (_cable_load(with_density(rope, 2.0)) - _cable_load(rope))[cables]
         yield f"modulus{name}", float(slopes.stiffness[cables].sum())
-        yield f"linear_mass{name}", float(slopes.cable_load_m_per_N[cables].sum(axis=0) @ load)
+        yield f"linear_mass{name}", float((slopes.cable_load_m_per_N[cables] * load).sum())
 
 
 def _by_differences(case: CaseResult, figures: tuple[float, float]) -> Sensitivities:
@@ -261,8 +261,9 @@ def _agreed(values: list[float]) -> float:
 
 
 def _cable_load(loaded: Loaded) -> FloatArray:
-    """Return the load per unstrained length of a cable (3,), base frame [N/m]."""
-    return np.asarray(-loaded.cable.weight_N_per_m * loaded.robot.upright[2])
+    """Return the load per unstrained length of the cables (n_cables, 3), base frame [N/m]."""
+    weight = loaded.cable.weight_N_per_m * np.ones(loaded.robot.n_cables)
+    return np.asarray(np.multiply.outer(-weight, loaded.robot.upright[2]))
 
 
 def with_payload(loaded: Loaded, factor: float) -> Loaded:

@@ -139,9 +139,9 @@ def _summary_of_selection(
             yield f"  {escape(result.case.name)}", f"{used}, at ({at}) m{more}"
     mass = f"{chosen.cable.rope_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
     yield "  mass", mass
-    attached = chosen.cable.attached.linear_density_kg_per_m
-    if attached:
-        yield "  attached along it", f"{attached:.4g} kg/m"
+    if chosen.cable.attached:
+        each = (f"{line.linear_density_kg_per_m:.4g}" for line in chosen.cable.attached)
+        yield "  attached along it", f"{', '.join(each)} kg/m"
 
 
 def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:

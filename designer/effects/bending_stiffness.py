@@ -17,7 +17,7 @@ def _change(machine: Machine, values: Values) -> Machine:
 def _size(machine: Machine) -> Size:
     """No rope is stiffer than a solid bar, EA · A/(4π), of the lightest material, 1000 kg/m³."""
     cable = machine.cable
-    area_m2 = cable.linear_density_kg_per_m / 1000.0
+    area_m2 = cable.mean_density_kg_per_m / 1000.0
     stiffest = cable.axial_stiffness_N * area_m2 / (4.0 * math.pi)
     return Size(10.0, bounds=(0.0, 1e6), plausible=(0.0, stiffest))
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from designer.effects.effect import Setting, as_built
 from designer.errors import EffectError
-from designer.model.cable import NOTHING_ATTACHED, Cable, Material
+from designer.model.cable import Cable, Material
 from designer.model.machine import Machine
 from designer.model.robot import Robot
 
@@ -70,7 +70,7 @@ class AsBuilt:
         They are where every effect scales; not where one adds, such as a film of ice or a hose
         along the cable, which is little on a thick cable and much on a thin one.
         """
-        reference, *cables = (astuple(self._at(material, d)) for d in _PROBES_M)
+        reference, *cables = (np.hstack(astuple(self._at(material, d))) for d in _PROBES_M)
         return all(np.allclose(cable, reference, rtol=_SAME, atol=0.0) for cable in cables)
 
     def material(self, material: Material, diameter_m: float | None = None) -> Material:
@@ -135,9 +135,9 @@ def built_with(machine: Machine, settings_of: SettingsOf) -> AsBuilt:
         )
     attached = machine.robot.attached
     has_effects = any(s.effect.on_machine for s in settings_of(machine))
-    is_changed = has_effects or attached != NOTHING_ATTACHED
+    is_changed = has_effects or bool(attached)
     return AsBuilt(
-        thin, (lambda cable: attached.on(built(cable).cable)) if is_changed else _unchanged
+        thin, (lambda c: built(c).cable.with_attached(attached)) if is_changed else _unchanged
     )
 
 

@@ -5,7 +5,7 @@ guess. The sizes come in the order of their weight, so that each starts from the
 neighbour, and Newton's first step, which is linear in c = 1/w, lands near the solution. Nothing is
 kept of a pose but what raises a maximum or a count, so that memory does not grow with the poses.
 
-For the unknowns and the balance see `designer.kernel.square`; the same cable is on every winch.
+For the unknowns and the balance see `designer.kernel.square`; the same rope is on every winch.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def sweep_sizes(
     inverse_weight: FloatArray,
     kappa: FloatArray,
     strength: FloatArray,
-    ones: FloatArray,
+    shares: FloatArray,
     cells: IntArray,
     leaves_out_hanging: bool,
     meets: Meets,
@@ -58,12 +58,9 @@ def sweep_sizes(
     ----------
     inverse_weight : array (n_sizes,)
         1 / w [m/N].
-    kappa, strength : array (n_sizes, n_cables)
-        Weight over axial stiffness [1/m] and allowable tension over weight [m], the same on every
-        winch.
-    ones : array (n_cables,)
-        The weights of the cables relative to each other. Given, and kappa and strength for each
-        cable, as `designer.kernel.square` has them: functions of both are compiled once.
+    kappa, strength, shares : array (n_sizes, n_cables)
+        Weight over axial stiffness [1/m], allowable tension over weight [m], and weight relative to
+        w: the same on every winch but for what is attached to its cable.
     cells : array (n_poses,)
         Part of the region that each pose lies in.
     leaves_out_hanging : bool
@@ -82,25 +79,25 @@ def sweep_sizes(
     for start in range(0, count, LANES):
         lane = lanes_of(every, start)
         place(cables, poses, situation, lane)
-        assemble(A, cables, poses, ones, rows)
+        assemble(A, cables, poses, shares[first], rows)
         solve_lanes(A, n, n + 2)
         for i in range(n):
             for right in range(2):
                 copy(A[i, n + right], guess[i, right])
         poses[C] = inverse_weight[first]
-        first_guess(cables, A, poses, ones)
+        first_guess(cables, A, poses, shares[first])
         for size in range(first, last):
             poses[C] = inverse_weight[size]
             for _ in range(_ITERATIONS):  # Newton, from the state that the poses are in
                 linearise(cables, kappa[size])
-                assemble(A, cables, poses, ones, rows)
+                assemble(A, cables, poses, shares[size], rows)
                 solve_lanes(A, n, n + 2)
                 poses[STEP] = 0.0
                 advance(cables, A, poses)
                 if np.max(poses[STEP]) < _SMALLEST_STEP:
                     break
             evaluate(cables, kappa[size])
-            check(poses, cables, ones, strength[size], rows)
+            check(poses, cables, shares[size], strength[size], rows)
             for j in range(min(LANES, count - start)):
                 at, cell, overload = lane[j], cells[lane[j]], poses[OVERLOAD, j]
                 # Negated, so that NaN counts as failed.

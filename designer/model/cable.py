@@ -68,13 +68,9 @@ class Attached(checked.Value):
     linear_density_kg_per_m: checked.NotNegative = 0.0
     diameter_m: checked.NotNegative = 0.0
 
-    def on(self, rope: Cable) -> Cable:
-        """Return a bare rope with this along it."""
-        density = rope.linear_density_kg_per_m + self.linear_density_kg_per_m
-        return replace(rope, linear_density_kg_per_m=density, attached=self)
 
-
-NOTHING_ATTACHED = Attached()
+AttachedEach = tuple[Attached, ...]
+"""What is clipped along each of the cables: one entry if all are alike, none for nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,8 +81,9 @@ class Cable:
     ----------
     diameter_m : float
         Nominal diameter [m]; NaN where it is not known.
-    linear_density_kg_per_m : float
-        Mass per unstrained length, with what is attached along it [kg/m].
+    linear_density_kg_per_m : float or array (n_cables,)
+        Mass per unstrained length, with what is attached along it [kg/m]; of each cable of the
+        robot where that differs.
     axial_stiffness_N : float
         EA, force per strain [N]; ``inf`` for an inextensible cable.
     allowable_tension_N : float
@@ -96,17 +93,18 @@ class Cable:
     stiffening : Stiffening or None
         How EA depends on the tension; None where it does not. ``axial_stiffness_N`` is then one
         value of it, which `designer.selection.stiffening` takes at the largest tension met.
-    attached : Attached
-        What is clipped along it; all other figures but the mass are those of the rope alone.
+    attached : tuple of Attached
+        What is clipped along it, see `AttachedEach`; all other figures but the mass are those of
+        the rope alone.
     """
 
     diameter_m: float
-    linear_density_kg_per_m: checked.Positive
+    linear_density_kg_per_m: checked.Positives
     axial_stiffness_N: Unlimited
     allowable_tension_N: Unlimited
     expansion_per_K: checked.Finite = STEEL_EXPANSION_PER_K
     stiffening: Stiffening | None = None
-    attached: Attached = NOTHING_ATTACHED
+    attached: AttachedEach = ()
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
@@ -114,24 +112,51 @@ class Cable:
             raise ValueError(f"diameter_m must be above 0, not {self.diameter_m:g}")
 
     @property
-    def weight_N_per_m(self) -> float:
-        """Weight per unstrained length [N/m]."""
+    def weight_N_per_m(self) -> float | FloatArray:
+        """Weight per unstrained length, as the mass [N/m]."""
         return self.linear_density_kg_per_m * STANDARD_GRAVITY_M_PER_S2
+
+    @property
+    def mean_density_kg_per_m(self) -> float:
+        """Mean over the cables of the mass per unstrained length [kg/m]."""
+        return float(np.mean(self.linear_density_kg_per_m))
+
+    @property
+    def attached_density_kg_per_m(self) -> float | FloatArray:
+        """Mass per unstrained length of what is attached, of each cable where it differs [kg/m]."""
+        return _alike_or_each([each.linear_density_kg_per_m for each in self.attached])
 
     @property
     def rope_density_kg_per_m(self) -> float:
         """Mass per unstrained length of the rope alone [kg/m]."""
-        return self.linear_density_kg_per_m - self.attached.linear_density_kg_per_m
+        return float(np.mean(self.linear_density_kg_per_m - self.attached_density_kg_per_m))
 
-    @property
-    def diameters_m(self) -> tuple[float, ...]:
-        """Diameters that wind and ice find: of the rope, and of what is attached [m]."""
-        return tuple(d for d in (self.diameter_m, self.attached.diameter_m) if d != 0.0)
+    def width_m(self, film_m: float) -> float | FloatArray:
+        """Return what wind and ice find: diameters of the rope and of what is attached [m].
+
+        A film makes each of them, where there is one, so much thicker.
+        """
+        films = [each.diameter_m + film_m * (each.diameter_m > 0.0) for each in self.attached]
+        return self.diameter_m + film_m + _alike_or_each(films)
+
+    def with_attached(self, attached: AttachedEach) -> Cable:
+        """Return a bare rope with something along it."""
+        laden = replace(self, attached=attached)
+        density = self.linear_density_kg_per_m + laden.attached_density_kg_per_m
+        return replace(laden, linear_density_kg_per_m=density)
 
     def with_rope_scaled(self, factor: float) -> Cable:
         """Return the cable with a rope so many times as heavy; what is attached stays."""
-        density = factor * self.rope_density_kg_per_m + self.attached.linear_density_kg_per_m
+        density = factor * self.rope_density_kg_per_m + self.attached_density_kg_per_m
         return replace(self, linear_density_kg_per_m=density)
+
+    def without(self, cable: int) -> Cable:
+        """Return what is on a robot without one of its cables, counted from 1."""
+        if len(self.attached) < 2:
+            return self
+        density = np.delete(self.linear_density_kg_per_m, cable - 1)
+        attached = self.attached[: cable - 1] + self.attached[cable:]
+        return replace(self, linear_density_kg_per_m=density, attached=attached)
 
     def at_tension(self, tension_N: float) -> Cable:
         """Return the cable with its EA at a tension [N]; itself where EA does not depend on it."""
@@ -140,11 +165,17 @@ class Cable:
         return replace(self, axial_stiffness_N=self.stiffening.at(tension_N))
 
 
+def _alike_or_each(figures: Sequence[float]) -> float | FloatArray:
+    """Return the figure of all cables, 0 of none, or those of each (n_cables,)."""
+    return np.array(figures) if len(figures) > 1 else sum(figures)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Cables:
     """The cables of a robot where they differ: by exit point, or all of them from pose to pose.
 
-    Its figures have the names of those of a `Cable`, as arrays (n_cables,), or (n_poses, 1).
+    Its figures have the names of those of a `Cable`, as arrays (n_cables,), or (n_poses, 1), or
+    (n_poses, n_cables) where what is attached to the cables differs.
 
     Parameters
     ----------
@@ -166,15 +197,19 @@ class Cables:
             raise ValueError("there must be a cable at least")
         for name in [figure.name for figure in fields(self) if not figure.init]:
             figures = np.array([getattr(cable, name) for cable in self.each])
-            of_poses = figures if self.of_pose is None else figures[self.of_pose][:, None]
-            object.__setattr__(self, name, of_poses)
+            if self.of_pose is not None:
+                figures = figures[self.of_pose].reshape(len(self.of_pose), -1)
+            elif figures.ndim == 2:  # of each cable what is on its own exit point
+                figures = np.diagonal(figures)
+            object.__setattr__(self, name, figures)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MaterialsByPose:
     """Families of cables that differ from pose to pose, as `Cables`.
 
-    Its figures have the names of those of a `Material`, as arrays (n_poses,).
+    Its figures have the names of those of a `Material`, as arrays (n_poses,), or
+    (n_poses, n_cables) where what is attached to the cables differs.
     """
 
     each: Sequence[Material]
@@ -200,27 +235,33 @@ class Material(checked.Value):
 
     Parameters
     ----------
-    density_kg_per_m3 : float
-        Mass per length over the area of the nominal circle [kg/m³].
+    density_kg_per_m3 : float or array (n_cables,)
+        Mass per length over the area of the nominal circle [kg/m³]; of each cable of the robot
+        where what is attached to them differs.
     youngs_modulus_Pa : float
         EA over the area of the nominal circle [Pa].
     allowable_stress_Pa : float
         Allowable tension over the area of the nominal circle, safety factor included [Pa].
     """
 
-    density_kg_per_m3: checked.Positive
+    density_kg_per_m3: checked.Positives
     youngs_modulus_Pa: Unlimited
     allowable_stress_Pa: checked.Positive
 
     @property
-    def elastic_compliance_per_m(self) -> float:
+    def elastic_compliance_per_m(self) -> float | FloatArray:
         """Weight per length over EA, κ = g ρ / E: the same for every section [1/m]."""
         return STANDARD_GRAVITY_M_PER_S2 * self.density_kg_per_m3 / self.youngs_modulus_Pa
 
     @property
-    def strength_length_m(self) -> float:
+    def strength_length_m(self) -> float | FloatArray:
         """Length whose own weight reaches the allowable stress, σ / (g ρ) [m]."""
         return self.allowable_stress_Pa / (STANDARD_GRAVITY_M_PER_S2 * self.density_kg_per_m3)
+
+    @property
+    def averaged(self) -> Material:
+        """The family with the mean density of the cables, to be told of in one figure."""
+        return replace(self, density_kg_per_m3=float(np.mean(self.density_kg_per_m3)))
 
     def cable(self, diameter_m: float) -> Cable:
         """Return the member of the family with this nominal diameter."""

@@ -31,6 +31,8 @@ from designer.model.robot import Platform, Robot
 from designer.model.space import Orientations
 
 AIR_DENSITY_KG_PER_M3 = 1.25
+_SAME_DIRECTION = 1e-12
+"""Between the loads of two cables: rounding."""
 FIRST_WINDS = 8
 EACH = "each"
 """Of a lost cable: each in turn."""
@@ -85,9 +87,11 @@ class Ice(checked.Value):
     thickness_m: checked.NotNegative
     density_kg_per_m3: checked.Positive = 900.0
 
-    def linear_density_kg_per_m(self, cable: Cable) -> float:
-        """Return its mass per length on a cable [kg/m]."""
-        around_m = sum(d + self.thickness_m for d in cable.diameters_m)
+    def linear_density_kg_per_m(self, cable: Cable) -> float | FloatArray:
+        """Return its mass per length on a cable, of each where they differ [kg/m]."""
+        if self.thickness_m == 0.0:
+            return 0.0
+        around_m = cable.width_m(self.thickness_m)
         return math.pi * self.thickness_m * around_m * self.density_kg_per_m3
 
 
@@ -153,7 +157,7 @@ class Loaded:
         return replace(body, mass_kg=case.mass_on(body), inertia_kg_m2=inertia)
 
     @property
-    def moving_density_kg_per_m(self) -> float:
+    def moving_density_kg_per_m(self) -> float | FloatArray:
         """Mass per length of the cables with ice: wind loads them, and adds none."""
         cable, ice = self.bare[1], self.case.ice
         around = 0.0 if ice is None else ice.linear_density_kg_per_m(cable)
@@ -295,16 +299,20 @@ class LoadCase:
         loaded = replace(robot, platform=body)
         # Weight, ice and drag of a cable per unstrained length, in the world frame.
         ice = self.ice or Ice(0.0)
-        density = cable.linear_density_kg_per_m + ice.linear_density_kg_per_m(cable)
-        load = -STANDARD_GRAVITY_M_PER_S2 * density * robot.level[2]
+        density: float | FloatArray = cable.linear_density_kg_per_m
+        density = density + ice.linear_density_kg_per_m(cable)
         if self.wind is not None and wind is not None:
-            width = sum(d + 2.0 * ice.thickness_m for d in cable.diameters_m)
-            load = load + self.wind.pressure_Pa * self.wind.cable_drag_coefficient * width * wind
-        size = float(np.linalg.norm(load))
-        if self.wind is not None:
-            loaded = replace(loaded, cable_load_direction=load / size)
+            load = np.multiply.outer(-STANDARD_GRAVITY_M_PER_S2 * density, robot.level[2])
+            per_m2 = self.wind.pressure_Pa * self.wind.cable_drag_coefficient
+            load = load + np.multiply.outer(per_m2 * cable.width_m(2.0 * ice.thickness_m), wind)
+            size: FloatArray = np.asarray(np.linalg.norm(load, axis=-1))
+            along = (load / size[..., None]).reshape(-1, 3)
+            if not np.allclose(along, along[0], rtol=0.0, atol=_SAME_DIRECTION):
+                raise ValueError("wind loads cables to which different things are attached apart")
+            loaded = replace(loaded, cable_load_direction=along[0])
+            density = (size if size.ndim else float(size)) / STANDARD_GRAVITY_M_PER_S2
         if self.wind is not None or self.ice is not None:
-            cable = replace(cable, linear_density_kg_per_m=size / STANDARD_GRAVITY_M_PER_S2)
+            cable = replace(cable, linear_density_kg_per_m=density)
         if self.expansion_per_K is not None:
             cable = replace(cable, expansion_per_K=self.expansion_per_K)
         return Loaded(self, bare, loaded, cable, wind, inertia, lost_cable)

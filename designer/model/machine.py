@@ -72,7 +72,7 @@ class Machine:
         """
         attached = self.robot.attached
         if self.relative_mass is None and self.relative_stiffness is None:
-            return attached.on(self.cable)
+            return self.cable.with_attached(attached)
         mass, stiffness = (
             np.ones(self.robot.n_cables) if share is None else share
             for share in (self.relative_mass, self.relative_stiffness)
@@ -80,7 +80,7 @@ class Machine:
         return Cables(
             [
                 replace(
-                    attached.on(self.cable).with_rope_scaled(m),
+                    self.cable.with_attached(attached).with_rope_scaled(m),
                     axial_stiffness_N=self.cable.axial_stiffness_N * s,
                 )
                 for m, s in zip(mass.tolist(), stiffness.tolist(), strict=True)

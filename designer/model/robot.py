@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from designer import checked
 from designer.arrays import BoolArray, FloatArray, IntArray, frozen_array
-from designer.model.cable import NOTHING_ATTACHED, STANDARD_GRAVITY_M_PER_S2, Attached
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, AttachedEach
 from designer.model.motion import Motion
 from designer.model.winches import Winches
 
@@ -95,8 +95,8 @@ class Robot:
         length does not count. None for gravity alone. The upright frame is then built from it.
     winches : Winches
         What pulls the cables.
-    attached : Attached
-        What is clipped along each of the cables; see `Attached.on`.
+    attached : tuple of Attached
+        What is clipped along each of the cables; see `Cable.with_attached`.
     """
 
     exit_points_m: checked.Points
@@ -114,7 +114,7 @@ class Robot:
     is_planar: bool = False
     cable_load_direction: checked.Vector | None = None
     winches: Winches = field(default_factory=Winches)
-    attached: Attached = NOTHING_ATTACHED
+    attached: AttachedEach = ()
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
@@ -129,6 +129,8 @@ class Robot:
         positions_m = self.winches.positions_m
         if positions_m is not None and len(positions_m) != self.n_cables:
             raise ValueError(f"{len(positions_m)} winches for {self.n_cables} exit points")
+        if len(self.attached) not in (0, 1, self.n_cables):
+            raise ValueError(f"{len(self.attached)} lines along {self.n_cables} cables")
 
     @property
     def n_cables(self) -> int:
@@ -156,6 +158,11 @@ class Robot:
     def is_square(self) -> bool:
         """Whether there are as many cables as degrees of freedom."""
         return self.n_cables == self.degrees_of_freedom
+
+    @property
+    def has_equal_cables(self) -> bool:
+        """Whether the same is attached to all cables."""
+        return len(self.attached) < 2
 
     @property
     def has_enough_cables(self) -> bool:
@@ -271,7 +278,12 @@ class Robot:
         if body.attachments_m is not None:
             body = replace(body, attachments_m=body.attachments_m[remaining])
         exit_points_m, winches = self.exit_points_m[remaining], self.winches.without(cable)
-        return replace(self, exit_points_m=exit_points_m, platform=body, winches=winches)
+        attached = self.attached
+        if not self.has_equal_cables:
+            attached = attached[: cable - 1] + attached[cable:]
+        return replace(
+            self, exit_points_m=exit_points_m, platform=body, winches=winches, attached=attached
+        )
 
     def loads_N(self, wrench_N: FloatArray | None = None) -> FloatArray:
         """Return `pull_N` less a force (n_poses, 3), or force and moment (n_poses, 6).

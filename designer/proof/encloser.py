@@ -33,6 +33,8 @@ def why_not(robot: Robot, space: Space) -> str:
     """Return why nothing can be proved of a robot in a space; empty where something can."""
     if robot.pulley_radius_m != 0.0:
         return "cables that run over pulleys are not enclosed"
+    if not robot.has_equal_cables:
+        return "cables to which different things are attached are not enclosed"
     if space.region.frame() is None:
         return "a region of this kind is not covered by boxes"
     if space.orientations.law is not None and not space.region.is_discrete:
@@ -71,7 +73,7 @@ class Encloser:
         self._size = np.abs(np.concatenate([robot.exit_points_m, *ends])).max()
         self._least_N = robot.tension_min_N if robot.is_redundant else 0.0
         self._sag = robot.sag_max if robot.is_redundant else None
-        weight = cable.weight_N_per_m
+        weight = float(np.mean(cable.weight_N_per_m))  # `why_not` refuses those that differ
         levers = np.linalg.norm(robot.attachments_m, axis=1)
         self._reach = float(levers.max()) or 1.0
         self._fuzz = _ULPS * max(float(self._size + self._reach), 1.0)

@@ -74,7 +74,7 @@ def servable(robot: Robot, space: Space, budget: Budget) -> Servable | None:
         return None
     size = float(np.ptp(np.vstack([robot.exit_points_m, space.region.bounds_m]), axis=0).max())
     density = _LIGHT * load_N / size / STANDARD_GRAVITY_M_PER_S2
-    rope = robot.attached.on(Cable(np.nan, density, np.inf, _STRONG * load_N))
+    rope = Cable(np.nan, density, np.inf, _STRONG * load_N).with_attached(robot.attached)
     covers = [_Part(robot, rope, cover) for cover in covers_of(space)]
     covers[0].compile()  # which is not counted
     began, boxes = time.monotonic(), 0

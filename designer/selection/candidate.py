@@ -188,7 +188,7 @@ def undominated(
 def _burdens(cable: Cable, size: Size, by_price: bool) -> tuple[float, float, float, float]:
     """Return what a rope is to have little of."""
     price = (size.price_per_m or 0.0) if by_price else 0.0
-    weight, strength = cable.linear_density_kg_per_m, cable.allowable_tension_N
+    weight, strength = cable.mean_density_kg_per_m, cable.allowable_tension_N
     return weight, -strength, cable.axial_stiffness_N, price
 
 

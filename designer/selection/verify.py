@@ -186,7 +186,7 @@ def verify_sizes(
     the workspace.
     """
     # The heavy ones first: slack cables are the harder, and start best from slack ones.
-    order = sorted(range(len(cables)), key=lambda k: -cables[k].weight_N_per_m)
+    order = sorted(range(len(cables)), key=lambda k: -cables[k].mean_density_kg_per_m)
     space, is_slow = workspace.space, not is_quick(robot)
     totals = _Totals(len(cables), robot.n_cables, space.n_coordinates)
     samples = ((places, True) for places in workspace.places())

@@ -64,11 +64,19 @@ def size_poses(
     """
     task = _task(robot, material, None)
     solution, run = solve_task(robot, poses, task, seeks_better=seeks_better, is_quick=is_quick)
-    area = solution.weight_N_per_m / (STANDARD_GRAVITY_M_PER_S2 * material.density_kg_per_m3)
+    heaviest = _densities(material).max(axis=-1)
+    area = solution.weight_N_per_m / (STANDARD_GRAVITY_M_PER_S2 * heaviest)
     massless_area = solution.massless_tension_N / material.allowable_stress_Pa
     shape = poses.shape
     return Sizing(
-        statics=statics_of(robot, poses, solution, run, material.youngs_modulus_Pa * area),
+        statics=statics_of(
+            robot,
+            poses,
+            solution,
+            run,
+            material.youngs_modulus_Pa * area,
+            relative_weights=task.relative_weights,
+        ),
         diameter_m=np.sqrt(4.0 * area / np.pi).reshape(shape),
         massless_tension_N=solution.massless_tension_N.reshape(shape),
         massless_diameter_m=np.sqrt(4.0 * massless_area / np.pi).reshape(shape),
@@ -98,9 +106,19 @@ def limit_ratio(robot: Robot, poses: Poses, material: Material) -> FloatArray:
 def _task(
     robot: Robot, material: Material | MaterialsByPose, inverse_m_per_N: float | None
 ) -> Task:
+    density = _densities(material)
+    heaviest = density.max(axis=-1, keepdims=True)
     return Task(
-        np.expand_dims(material.elastic_compliance_per_m, -1),
-        np.expand_dims(material.strength_length_m, -1),
+        np.reshape(material.elastic_compliance_per_m, density.shape),
+        np.reshape(material.strength_length_m, density.shape),
         inverse_m_per_N,
+        relative_weights=density / heaviest,
         sag_max=robot.family_sag_max,
     )
+
+
+def _densities(material: Material | MaterialsByPose) -> FloatArray:
+    """Return densities (1 or n_cables,), or (n_poses, 1 or n_cables) [kg/m³]."""
+    density = np.atleast_1d(material.density_kg_per_m3)
+    is_by_pose = isinstance(material, MaterialsByPose) and density.ndim == 1
+    return density[:, None] if is_by_pose else density

@@ -96,7 +96,7 @@ def size_by_nlp(robot: Robot, pose: Poses, material: Material) -> NlpSizing:
     # SLSQP may stop on its line search at the rounding floor; the residual is what counts.
     converged = worst < 1e-8
     force_x, force_z, length, density = problem.unpack(answer.x)
-    area = density / material.density_kg_per_m3
+    area = np.max(density / material.density_kg_per_m3)
     return NlpSizing(
         diameter_m=float(np.sqrt(4.0 * area / np.pi)) if converged else float("nan"),
         length_m=length,
@@ -140,7 +140,9 @@ class _NonlinearProgramme:
         X, D = self.geometry.horizontal_distance_m, self.geometry.drop_m
         return np.append(np.stack([pull * X, -pull * D, np.ones_like(X)], axis=1).ravel(), 1.0)
 
-    def unpack(self, u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, float]:
+    def unpack(
+        self, u: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, float | FloatArray]:
         """Return F_x, F_z [N], unstrained lengths [m] and linear density [kg/m]."""
         cables = u[:-1].reshape(-1, 3)
         section = float(u[-1]) * self.force_N / self.material.allowable_stress_Pa

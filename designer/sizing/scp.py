@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
+from designer.model.cable import Material
 from designer.model.robot import Poses, Robot
 from designer.physics import catenary
 from designer.statics.distribution import distribute_evenly
@@ -269,8 +269,7 @@ class _Problem:
         gap = self.gap(state, y, c)
         converged = infeasible < 1e-6 and gap < 1e-6 and c > 0.0
         allowable_N = self.load_N / c
-        weight = allowable_N / self.material.strength_length_m
-        area = weight / (STANDARD_GRAVITY_M_PER_S2 * self.material.density_kg_per_m3)
+        area = allowable_N / self.material.allowable_stress_Pa
         return ScpSizing(
             diameter_m=float(np.sqrt(4.0 * area / np.pi)) if converged else float("nan"),
             force_x_N=y * allowable_N * self.distance_m / self.chord_m,

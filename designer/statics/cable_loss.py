@@ -107,9 +107,11 @@ def settle(
     every = np.arange(robot.n_cables)
     remaining = every if lost is None else np.delete(every, lost - 1)
     start = Poses(poses.position_m[at], rotation[at])
-    reduced = robot if lost is None else robot.without_cable(lost)
+    reduced, left = robot, cable
+    if lost is not None:
+        reduced, left = robot.without_cable(lost), cable.without(lost)
     length = (1.0 + growth) * before.length_m[at][:, remaining]
-    forward_statics = solve_forward(reduced, cable, length, start)
+    forward_statics = solve_forward(reduced, left, length, start)
     rests, at = forward_statics.is_stable, at[forward_statics.is_stable]
     tension[at] = 0.0
     tension[np.ix_(at, remaining)] = forward_statics.statics.cable_tension_N[rests]

@@ -280,7 +280,8 @@ def solve_sagging(
         If there are more or fewer `Cables` than exit points, or fewer than degrees of freedom.
     """
     weight = np.atleast_1d(cable.weight_N_per_m)
-    if isinstance(cable, Cables) and weight.shape not in ((robot.n_cables,), (*poses.shape, 1)):
+    fits = (robot.n_cables,), (*poses.shape, 1), (*poses.shape, robot.n_cables)
+    if isinstance(cable, Cables) and weight.shape not in fits:
         raise ValueError(f"{weight.shape[-1]} cables do not fit {robot.n_cables} exit points")
     heaviest = weight.max(axis=-1, keepdims=True)
     task = Task(

@@ -73,18 +73,19 @@ def meet(
         for row, cable in enumerate(cables):
             add_slowly(meets, row, robot, poses, cable, cells, leaves_out_hanging)
         return meets
-    weight = np.array([cable.weight_N_per_m for cable in cables])
-    stiffness = np.array([cable.axial_stiffness_N for cable in cables])
-    allowable = np.array([cable.allowable_tension_N for cable in cables])
+    weight = np.array([cable.weight_N_per_m * np.ones(robot.n_cables) for cable in cables])
+    stiffness = np.array([[cable.axial_stiffness_N] for cable in cables])
+    allowable = np.array([[cable.allowable_tension_N] for cable in cables])
+    heaviest = weight.max(axis=1)
     share_out(
         sweep_sizes,
         len(cables),
         _SHARE,
         upright_situation(robot, poses, upright_exit_points_m(robot)),
-        plain(1.0 / weight),
-        plain(np.repeat((weight / stiffness)[:, None], robot.n_cables, axis=1)),
-        plain(np.repeat((allowable / weight)[:, None], robot.n_cables, axis=1)),
-        plain(np.ones(robot.n_cables)),
+        plain(1.0 / heaviest),
+        plain(weight / stiffness),
+        plain(allowable / weight),
+        plain(weight / heaviest[:, None]),
         np.ascontiguousarray(cells, dtype=np.int64),
         leaves_out_hanging,
         meets,

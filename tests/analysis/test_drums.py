@@ -193,4 +193,22 @@ def test_window_edits_the_drum_and_what_is_attached(tmp_path: Path) -> None:
     assert question is not None
     robot = question.study.robot
     assert robot.winches.drum == Drum(0.12, 0.07, 2, 0.0055)
-    assert robot.attached == Attached(0.4, 0.01)
+    assert robot.attached == (Attached(0.4, 0.01),)
+
+
+def test_window_edits_what_is_attached_to_one_cable(tmp_path: Path) -> None:
+    path, study = tmp_path / "crane.yaml", crane()
+    n_cables = len(study["robot"]["anchors"])
+    line = {"linear_mass": 0.3, "diameter": 0.01}
+    study["robot"]["attached"] = [line] * (n_cables - 1) + [None]
+    path.write_text(yaml.safe_dump(study), encoding="utf-8")
+    session = Session.open(path, find_plugins(with_plugins=False))
+    session.edit("robot.attached[1].linear_mass", "0.4 kg/m")
+    question = session.question()
+    assert question is not None
+    assert question.study.robot.attached == (
+        Attached(0.3, 0.01),
+        Attached(0.4, 0.01),
+        *[Attached(0.3, 0.01)] * (n_cables - 3),
+        Attached(),
+    )

@@ -13,7 +13,7 @@ import yaml
 from pairs.agreement import SAME, is_balanced, ropes_of
 from pairs.options import GRADES
 from pairs.reference import Pose, hang, solve
-from pairs.scenario import problem_of, random_places
+from pairs.scenario import lines_of, problem_of, random_places
 
 import designer
 from designer.analysis.analyse import Analysis
@@ -149,11 +149,11 @@ def diagnose(text: Mapping[str, Any], analysis: Analysis, folder: Path) -> Itera
         },
         "noise": {"length": 1e-4, "tension": 1.0},
     }
-    line = text["robot"].get("attached", {}).get("linear_mass", 0.0)
+    line = np.array([own["linear_mass"] if own else 0.0 for own in lines_of(text["robot"])])
     heavier = effects.get("linear_mass", {}).get("scale", 1.0) * size["linear_mass"] + line
     problem = replace(
         problem,
-        load_N_per_m=problem.load_N_per_m * heavier / (size["linear_mass"] + line),
+        load_N_per_m=problem.load_N_per_m * (heavier / (size["linear_mass"] + line))[:, None],
         stiffness_N=problem.stiffness_N * effects.get("elastic_modulus", {}).get("scale", 1.0),
     )
     drum = effects.get("drum_scale", {}).get("scale", 1.0)

@@ -275,6 +275,16 @@ def _spooling(study: Text) -> None:
     _set("robot.winches.drum", {"length": 0.3} | aside)(study)
 
 
+def _lines(study: Text) -> None:
+    lines = [
+        {"linear_mass": 0.35, "diameter": 0.012},
+        None,
+        {"linear_mass": 0.2, "diameter": 0.008},
+    ]
+    n_cables = len(study["robot"]["anchors"])
+    study["robot"]["attached"] = [lines[k % 3] for k in range(n_cables)]
+
+
 def _path(study: Text) -> None:
     name = next(name for name, base in BASES.items() if base["name"] == study["name"])
     study["workspace"]["path"] = f"path-{name}.csv"
@@ -407,6 +417,7 @@ OPTIONS: tuple[Option, ...] = (
         ALL,
         _set("robot.attached", {"linear_mass": 0.35, "diameter": 0.012}),
     ),
+    Option("attached_each", "line along some cables", ALL, _lines),
     Option("sheave", "sheave", ALL, _set("selection.sheave_diameter", 0.2)),
     Option("fitting", "end fittings", ALL, _set("selection.termination_efficiency", 0.9)),
     Option("groups", "groups of cables", ALL, _groups),

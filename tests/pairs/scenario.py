@@ -122,8 +122,7 @@ def problem_of(
     ice = case.get("ice") or {"thickness": 0.0}
     t, iced = ice["thickness"], ice.get("density", 900.0)
     loads, masses = [], []
-    line = robot.get("attached")  # a second cylinder along each rope
-    for _, size in ropes:
+    for (_, size), line in zip(ropes, lines_of(robot), strict=True):
         cylinders = [(size["linear_mass"], size["diameter"])]
         cylinders += [(line["linear_mass"], line["diameter"])] if line else []
         masses.append(sum(m + np.pi * t * (d + t) * iced for m, d in cylinders))
@@ -150,6 +149,12 @@ def problem_of(
         least_N=robot.get("tension_min", 0.0),
         sag_max=None if sag == "none" else sag,
     )
+
+
+def lines_of(robot: Data) -> list[Data | None]:
+    """Return what is clipped along each cable: a second cylinder, or None."""
+    given = robot.get("attached")
+    return given if isinstance(given, list) else [given] * len(robot["anchors"])
 
 
 def growth_of(study: Data, case: Data, grade: Data) -> float:

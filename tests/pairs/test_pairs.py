@@ -42,6 +42,7 @@ QUICK = (
     ("sheave", "fitting"),
     ("pulleys", "winch_tension"),
     ("platform_frequency", "duty_class"),
+    ("ice", "attached_each"),
 )
 """Pairs on the robot of three cables, which is quick, of as many options as there are."""
 

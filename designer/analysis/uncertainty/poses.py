@@ -59,9 +59,12 @@ class GoverningCandidates:
     def is_one_pass(self) -> bool:
         """Whether all draws without moved exit points are solved in one compiled pass.
 
-        Wind does not grow with the payload, nor does a force that an effect has put on the robot.
+        Wind does not grow with the payload, nor does a force that an effect has put on the robot,
+        and what is attached to cables does not vary with the rope: one weight stands for all.
         """
         loaded = self.loaded
+        if not loaded.robot.has_equal_cables:
+            return False
         still = loaded.wind is None and not loaded.bare[0].platform.centre_force_N.any()
         return still and not loaded.keeps_lengths and is_quick(loaded.robot)
 

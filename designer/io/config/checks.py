@@ -18,6 +18,7 @@ from designer.effects.effect import ALL_ATTACHMENTS, OF_CABLE, Effect
 from designer.errors import Fault
 from designer.io.config.columns import ColumnSection
 from designer.io.config.effects import read_effects
+from designer.io.config.machine import attached_each
 from designer.io.config.robot_checks import AT_MOST, LARGEST, ROBOT_CHECKS, Parts, rank, valid
 from designer.measured.assign import COVARIATE, IGNORE, TIME_NAME, cable_of, is_rotation
 from designer.model.measurements import POSES
@@ -234,6 +235,9 @@ def fields_go_together(parts: Parts) -> Iterator[Fault]:
     for path, problem, expected in _EXCLUDES:
         if path in given and parts.raw(_GROUPS) is not None:
             yield parts.fault(_GROUPS, problem, expected)
+    if parts.raw(_GROUPS) is not None and len(attached_each(parts.read("robot.attached"))) > 1:
+        problem = "groups of cables are chosen where the same is attached to all of them"
+        yield parts.fault(_GROUPS, problem, "one robot.attached for all cables, or no groups")
 
 
 def path_stands_alone(parts: Parts) -> Iterator[Fault]:
@@ -321,6 +325,10 @@ def _case_fits(
     if parts.raw("robot.platform.drag") is None:
         problem = "the platform has no area in the wind"
         expected = "robot.platform.drag: {area: …, coefficient: …}"
+        yield parts.fault(_CASES, problem, expected, index, "wind")
+    if len(attached_each(parts.read("robot.attached"))) > 1:
+        problem = "wind loads cables to which different things are attached in different directions"
+        expected = "the same attached to all cables, or no wind; all are solved with one direction"
         yield parts.fault(_CASES, problem, expected, index, "wind")
     if parts.raw("cable.drag_coefficient") is None:
         problem = "the drag of the cables is not given"

@@ -13,7 +13,7 @@ from designer.documents.bounds import MOST_CABLES
 from designer.documents.fields import Text, WholeNumber, list_of, only_word
 from designer.documents.section import Section, config_field
 from designer.io.config.regions import AnyRegion, Box, only_one_of
-from designer.model.cable import NOTHING_ATTACHED, Attached
+from designer.model.cable import Attached, AttachedEach
 from designer.model.drum import DEAD_TURNS, MOST_LAYERS, Drum
 from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import Region
@@ -173,18 +173,47 @@ class WinchesSection(Section):
 
 
 class AttachedSection(Section):
-    """What is clipped along each cable, such as a power line or a hose; it bears no tension."""
+    """What is clipped along a cable, such as a power line or a hose; it bears no tension."""
 
     linear_mass: fields.LinearDensity = config_field(
         "Mass along the cables", expected="a mass per length such as '0.4 kg/m'"
     )
-    """Mass per length of what is clipped along each cable: it hangs on the rope, and is none of
-    the rope's own mass, price and stiffness."""
+    """Mass per length of what is clipped along a cable: it hangs on the rope, and is none of the
+    rope's own mass, price and stiffness."""
     diameter: fields.RopeDiameter = config_field(
         "Diameter along the cables", expected="a length such as '12 mm'"
     )
-    """Diameter of what is clipped along each cable, beside the rope in wind and ice. Clearances are
+    """Diameter of what is clipped along a cable, beside the rope in wind and ice. Clearances are
     those of the ropes' axes, without it."""
+
+    @property
+    def attached(self) -> Attached:
+        """What it is."""
+        return Attached(self.linear_mass, self.diameter)
+
+
+def attached_each(
+    given: AttachedSection | tuple[AttachedSection | None, ...] | None,
+) -> AttachedEach:
+    """Return what is attached to each cable; one entry where all are alike, none of nothing."""
+    sections = given if isinstance(given, tuple) else (given,)
+    each = tuple(Attached() if section is None else section.attached for section in sections)
+    if len(set(each)) > 1:
+        return each
+    return each[:1] if each[0] != Attached() else ()
+
+
+ConfiguredAttached = Annotated[
+    Annotated[AttachedSection, Tag("along all cables")]
+    | Annotated[
+        tuple[AttachedSection | None, ...],
+        list_of(2, MOST_CABLES, "one for each cable, null for nothing"),
+        Tag("along each cable"),
+    ],
+    Discriminator(
+        lambda given: "along each cable" if isinstance(given, list | tuple) else "along all cables"
+    ),
+]
 
 
 class RobotSection(Section):
@@ -203,8 +232,9 @@ class RobotSection(Section):
     freedom."""
     winches: WinchesSection = WinchesSection()
     """What pulls the cables: all winches are alike."""
-    attached: AttachedSection | None = None
-    """What is clipped along each cable, the same along all, such as a power line or a hose."""
+    attached: ConfiguredAttached | None = None
+    """What is clipped along each cable, such as a power line or a hose: the same along all, or a
+    list with one for each cable, in the order of the anchors, null for nothing."""
 
     def robot(self) -> Robot:
         """Return the robot."""
@@ -215,9 +245,7 @@ class RobotSection(Section):
             gravity_direction=frozen_array(self.gravity),
             is_planar=self.planar,
             winches=self.winches.winches(),
-            attached=NOTHING_ATTACHED
-            if self.attached is None
-            else Attached(self.attached.linear_mass, self.attached.diameter),
+            attached=attached_each(self.attached),
         )
 
 

@@ -159,7 +159,7 @@ def _with_family(
         return entries
     meaning = {
         "cable.grade": (
-            f"{format_SI(material.density_kg_per_m3, DENSITY)}, "
+            f"{format_SI(float(material.density_kg_per_m3), DENSITY)}, "
             f"modulus {format_SI(material.youngs_modulus_Pa, STRESS)}, "
             f"allowable {format_SI(material.allowable_stress_Pa, STRESS)}, on the nominal circle"
         ),
@@ -251,12 +251,12 @@ def _entries(
 ) -> Iterator[Entry]:
     if node is None:
         yield Entry(path_text(place), DEFAULT, _in_SI(value, dimension))
-    elif isinstance(value, tuple) and value and isinstance(value[0], BaseModel):
+    elif isinstance(value, tuple) and any(isinstance(item, BaseModel) for item in value):
         for index, item in enumerate(value):
             yield Entry(
                 path_text((*place, index)),
                 as_given(node.child(index)),
-                _in_words(item, node.child(index)),
+                "none" if item is None else _in_words(item, node.child(index)),
             )
     elif isinstance(value, dict) and value:
         for name, item in value.items():

@@ -118,6 +118,7 @@ AT_MOST = f"at most {LARGEST.most:g} m: {LARGEST.reason}; check the unit"
 _ANCHORS = "robot.anchors"
 _ATTACHMENTS = "robot.platform.attachments"
 _WINCHES = "robot.winches.positions"
+_ATTACHED = "robot.attached"
 _NEAREST_WINCH_M = 1e-3
 _NO_POINT_MASS = "robot.platform.attachments, or leave it out"
 
@@ -380,6 +381,15 @@ def winches_fit(parts: Parts) -> Iterator[Fault]:
         yield parts.fault(_WINCHES, problem, expected, int(index))
 
 
+def attached_fit(parts: Parts) -> Iterator[Fault]:
+    """A list of what is attached has an entry for each cable."""
+    anchors, attached = parts.array(_ANCHORS), parts.read(_ATTACHED)
+    if anchors is None or not isinstance(attached, tuple) or len(attached) == len(anchors):
+        return
+    problem = f"{len(attached)} entries for {len(anchors)} anchors"
+    yield parts.fault(_ATTACHED, problem, "one for each anchor, in their order, null for nothing")
+
+
 ROBOT_CHECKS = (
     distinct_cables,
     anchors_span_area,
@@ -393,4 +403,5 @@ ROBOT_CHECKS = (
     strain_stays_small,
     robot_has_a_size,
     winches_fit,
+    attached_fit,
 )

@@ -64,10 +64,10 @@ def _comparison(analysis: Analysis, outcome: GradeOutcome) -> Context:
     ValueError
         If no size of the grade fits.
     """
-    best, real = outcome.best, outcome.family
+    best, real = outcome.best, outcome.family.averaged
     if best is None:
         raise ValueError(f"no size of {outcome.grade.id} fits")
-    ideal = analysis.built.material(analysis.study.material)
+    ideal = analysis.built.material(analysis.study.material).averaged
     materials = ideal, real, _material_of(best)
     sagging = analysis.workspace.sagging if analysis.workspace else None
     optimum_m, size_m = outcome.continuous_diameter_m, best.size.diameter_m
@@ -90,14 +90,14 @@ def _comparison(analysis: Analysis, outcome: GradeOutcome) -> Context:
         "density": real.density_kg_per_m3 / ideal.density_kg_per_m3,
         "stiffness": real.youngs_modulus_Pa / ideal.youngs_modulus_Pa,
         "thicker": size_m / optimum_m - 1.0,
-        "heavier": best.cable.linear_density_kg_per_m / masses[1] - 1.0,
+        "heavier": best.cable.mean_density_kg_per_m / masses[1] - 1.0,
     }
 
 
 def _material_of(candidate: Candidate) -> Material:
     area_m2 = candidate.size.nominal_area_m2
     return Material(
-        density_kg_per_m3=candidate.cable.linear_density_kg_per_m / area_m2,
+        density_kg_per_m3=candidate.cable.mean_density_kg_per_m / area_m2,
         youngs_modulus_Pa=candidate.cable.axial_stiffness_N / area_m2,
         allowable_stress_Pa=candidate.cable.allowable_tension_N / area_m2,
     )

@@ -88,9 +88,9 @@ def _lowered(trials: Trials, corner: list[Cable], g: int, culprit: int) -> list[
     softest = min(candidate.cable.axial_stiffness_N for candidate in trials.products)
     soft = _with(corner, g, replace(corner[g], axial_stiffness_N=softest))
     corner = soft if _overloads(trials, soft, culprit) else corner
-    weights = sorted({candidate.cable.linear_density_kg_per_m for candidate in trials.products})
+    weights = sorted({candidate.cable.mean_density_kg_per_m for candidate in trials.products})
     low = 0
-    high = int(np.searchsorted(weights, corner[g].linear_density_kg_per_m))
+    high = int(np.searchsorted(weights, corner[g].mean_density_kg_per_m))
     for _ in range(8):
         if low >= high:
             break
