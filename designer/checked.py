@@ -24,8 +24,8 @@ class Number:
     def require(self, name: str, value: float | FloatArray) -> None:
         """Raise ValueError, with one sentence, unless a value is such a number, or all of it."""
         if isinstance(value, np.ndarray):
-            for each in value.ravel().tolist():
-                self.require(name, each)
+            for number in value.ravel().tolist():
+                self.require(name, number)
             return
         if not value > self.above and self.above > -np.inf:
             raise ValueError(f"{name} must be above {self.above:g}, not {value:g}")

@@ -140,8 +140,8 @@ def _summary_of_selection(
     mass = f"{chosen.cable.rope_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
     yield "  mass", mass
     if chosen.cable.attached:
-        each = (f"{line.linear_density_kg_per_m:.4g}" for line in chosen.cable.attached)
-        yield "  attached along it", f"{', '.join(each)} kg/m"
+        masses = (f"{line.linear_density_kg_per_m:.4g}" for line in chosen.cable.attached)
+        yield "  attached along it", f"{', '.join(masses)} kg/m"
 
 
 def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:

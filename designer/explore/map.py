@@ -188,9 +188,7 @@ def _values(
         stays = np.where(np.isnan(softness), 0.0, 1.0 / softness)
         found["stiffness"] = np.where(statics.is_solved, stays, np.nan)
     if "frequency" in keys:
-        density: FloatArray | float = statics.weight_N_per_m / STANDARD_GRAVITY_M_PER_S2
-        if cable is not None:
-            density = cable.linear_density_kg_per_m
+        density = statics.weight_N_per_m / STANDARD_GRAVITY_M_PER_S2
         platform = question.robot.platform
         found["frequency"] = platform_frequencies_Hz(statics, platform, density)[..., 0]
     return found
