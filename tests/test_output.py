@@ -270,7 +270,7 @@ main()
 def test_init_on_a_full_disk_leaves_no_file(tmp_path: Path, room: int) -> None:
     done = subprocess.run(
         [sys.executable, "-c", INIT_WITH_LITTLE_ROOM, str(room), "init", "a.yaml"],
-        cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False,
+        cwd=tmp_path, capture_output=True, text=True, timeout=900, check=False,
     )  # fmt: skip
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1

@@ -23,7 +23,7 @@ def into_closed_pipe(*arguments: str) -> subprocess.CompletedProcess[bytes]:
             [*DESIGNER, *arguments],
             stdout=write_end,
             stderr=subprocess.PIPE,
-            timeout=300,
+            timeout=900,
             check=False,
         )
     finally:
@@ -55,7 +55,7 @@ def test_a_reader_who_goes_away_is_no_negative_answer(
 def test_an_output_that_is_full_is_told_in_one_line(command: tuple[str, ...]) -> None:
     with Path("/dev/full").open("wb") as full:
         done = subprocess.run(
-            [*DESIGNER, *command], stdout=full, stderr=subprocess.PIPE, timeout=300, check=False
+            [*DESIGNER, *command], stdout=full, stderr=subprocess.PIPE, timeout=900, check=False
         )
     assert done.returncode == 2
     assert done.stderr.startswith(b"standard output: cannot be written")
@@ -65,7 +65,7 @@ def test_an_output_that_is_full_is_told_in_one_line(command: tuple[str, ...]) ->
 @posix
 def test_no_output_at_all() -> None:
     closed = f"exec {' '.join([*DESIGNER, *LIST])} >&-"
-    done = subprocess.run(["sh", "-c", closed], capture_output=True, timeout=300, check=False)
+    done = subprocess.run(["sh", "-c", closed], capture_output=True, timeout=900, check=False)
     assert (done.returncode, done.stderr) == (0, b"")
 
 
@@ -73,7 +73,7 @@ def test_letters_that_the_terminal_lacks_become_question_marks() -> None:
     done = subprocess.run(
         [*DESIGNER, *LIST],
         capture_output=True,
-        timeout=300,
+        timeout=900,
         check=False,
         env={**os.environ, "PYTHONIOENCODING": "ascii"},
     )
@@ -106,7 +106,7 @@ def test_a_request_to_end_leaves_nothing_behind(
         assert process.stdout is not None
         assert process.stdout.readline() == b"at work\n"
         process.send_signal(request_to_end)
-        status = process.wait(timeout=300)
+        status = process.wait(timeout=900)
     assert status != 0
     assert list(tmp_path.iterdir()) == []
 
@@ -144,7 +144,7 @@ def test_a_request_to_end_does_not_unwind_a_library_that_is_half_loaded(
         [sys.executable, "-c", LOADING, request_to_end.name],
         cwd=tmp_path,
         capture_output=True,
-        timeout=300,
+        timeout=900,
         check=False,
     )
     assert (done.returncode, done.stdout) == (128 + request_to_end, b"")
@@ -169,7 +169,7 @@ def test_notes_that_nobody_reads_are_no_negative_answer(
     os.close(read_end)
     try:
         done = subprocess.run(
-            [sys.executable, *command], stderr=write_end, timeout=300, check=False
+            [sys.executable, *command], stderr=write_end, timeout=900, check=False
         )
     finally:
         os.close(write_end)
@@ -197,7 +197,7 @@ def test_a_fault_of_the_program_is_one_line_and_no_answer(tmp_path: Path, error:
         env={**os.environ, "XDG_STATE_HOME": str(tmp_path), "HOME": str(tmp_path)},
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=900,
         check=False,
     )
     (line,) = done.stderr.splitlines()
@@ -216,7 +216,7 @@ def test_a_fault_of_the_program_is_one_line_and_no_answer(tmp_path: Path, error:
 def test_a_standard_error_that_is_full_is_no_answer(command: tuple[str, ...]) -> None:
     with Path("/dev/full").open("wb") as full:
         done = subprocess.run(
-            [*DESIGNER, *command], stdout=subprocess.PIPE, stderr=full, timeout=300, check=False
+            [*DESIGNER, *command], stdout=subprocess.PIPE, stderr=full, timeout=900, check=False
         )
     assert (done.returncode, done.stdout) == (2, b"")
 

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pint import UnitRegistry
 
@@ -69,7 +69,6 @@ NAMES = ["m", "mm", "kg", "degC", "°C", "%", "°", "dBm", "Ym", "ym", "lambda",
     value=st.floats(-1e9, 1e9).filter(lambda value: abs(value) > 1e-9),
     how=st.sampled_from(FACTORS),
 )
-@settings(deadline=None)
 def test_a_value_written_in_another_unit_is_the_same_in_SI(
     value: float, how: tuple[Dimension, str, float]
 ) -> None:
@@ -175,7 +174,6 @@ def test_hostile_texts_are_refused_at_once(text: str) -> None:
     ),
     dimension=st.sampled_from([LENGTH, NUMBER, STRESS, PER_TEMPERATURE]),
 )
-@settings(deadline=None)
 def test_any_text_is_a_finite_number_or_refused(
     number: str, words: list[str], dimension: Dimension
 ) -> None:

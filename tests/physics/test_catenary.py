@@ -96,7 +96,7 @@ CABLE = st.tuples(
 )
 
 
-@settings(deadline=None, max_examples=300)
+@settings(max_examples=300)
 @given(CABLE)
 def test_forces_place_the_end_where_it_is(cable) -> None:
     X, D, excess, EA, w = cable
@@ -106,7 +106,7 @@ def test_forces_place_the_end_where_it_is(cable) -> None:
     assert np.hypot(x - X, z + D) <= 1e-12 * max(length, np.hypot(X, D))
 
 
-@settings(deadline=None, max_examples=300)
+@settings(max_examples=300)
 @given(CABLE, st.floats(-6.0, 6.0))
 def test_length_places_the_end_where_it_is(cable, magnitude) -> None:
     X, D, _, EA, w = cable

@@ -464,7 +464,7 @@ class TestInteractive:
         flags = ("--headless", "--no-sandbox", "--use-angle=swiftshader", "--disable-dev-shm-usage")
         more = ("--enable-unsafe-swiftshader", "--virtual-time-budget=6000", "--dump-dom")
         command = ["chromium", *flags, *more, f"--user-data-dir={tmp_path / 'profile'}", str(file)]
-        run = subprocess.run(command, capture_output=True, text=True, check=True, timeout=300)
+        run = subprocess.run(command, capture_output=True, text=True, check=True, timeout=900)
         if "WebGL" in run.stderr and 'class="label strong" style' not in run.stdout:
             pytest.skip("this Chromium draws no WebGL here")
         assert re.search(r'class="label strong"[^>]* style="left: [\d.]+px; top: ', run.stdout)
@@ -501,7 +501,7 @@ class TestOpenGL:
             env={**kept, **no_driver},
             capture_output=True,
             text=True,
-            timeout=400,
+            timeout=900,
             check=True,
         )
         assert "apt-get install libegl1 libgl1-mesa-dri'" in done.stdout

@@ -18,7 +18,7 @@ def run(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]
     kept = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
     command = [sys.executable, "-m", "designer", "explore", *arguments]
     return subprocess.run(
-        command, env=kept | environment, capture_output=True, text=True, check=False, timeout=200
+        command, env=kept | environment, capture_output=True, text=True, check=False, timeout=900
     )
 
 

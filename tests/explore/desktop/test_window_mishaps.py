@@ -98,8 +98,8 @@ def test_closing_in_the_middle_of_long_work_loses_nothing(
     assert "not finished" in told[0]
     assert "not saved" in told[1]
     assert not window.isVisible()
-    assert time.monotonic() - start < 20.0
-    process.join(20.0)
+    assert time.monotonic() - start < 120.0
+    process.join(900.0)
     assert process.exitcode is not None
     assert "mass: 190 kg" in file.read_text(encoding="utf-8")
     assert not (tmp_path / "r").exists() or not list((tmp_path / "r").iterdir())

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint
 from PySide6.QtWidgets import QComboBox, QWidget
-from window_driver import Driver, n_colours
+from window_driver import LONGEST_MS, Driver, n_colours
 
 from designer.report import format as fmt
 
@@ -109,7 +109,7 @@ def test_the_mouse_reads_the_map(yard: Driver) -> None:
     from PySide6.QtTest import QTest
 
     QTest.mouseMove(yard.scene, yard.pixel(wanted))
-    yard.bot.waitUntil(lambda: yard.scene.overlay.pointed is not None, timeout=3000)
+    yard.bot.waitUntil(lambda: yard.scene.overlay.pointed is not None, timeout=LONGEST_MS)
     text = yard.scene.overlay.pointed[1]
     assert text.startswith("Utilisation of the rope: ")
     assert f"{fmt.number(100.0 * value, 4)} %" in text
