@@ -53,12 +53,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Make the cases slow that come after those of ``cases_by_default``; keep the part asked for.
 
-    All cases of a test are in one part, which nothing but its name decides.
+    All cases of a test are in one part, which nothing but its name decides; sets of options are
+    tests of their own.
     """
     part, n_parts = map(int, config.getoption("--part").split("/"))
 
     def is_in(item: pytest.Item) -> bool:
-        return crc32(item.nodeid.partition("[")[0].encode()) % n_parts == part % n_parts
+        name = item.nodeid if "pairs/" in item.nodeid else item.nodeid.partition("[")[0]
+        return crc32(name.encode()) % n_parts == part % n_parts
 
     config.hook.pytest_deselected(items=[item for item in items if not is_in(item)])
     items[:] = filter(is_in, items)

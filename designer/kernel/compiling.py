@@ -10,9 +10,11 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar
 
+import llvmlite.binding
 import numba
-
-from designer import __version__
+from filelock import FileLock
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserWideCacheLocator
+from platformdirs import user_cache_path
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -21,6 +23,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 # these copies agree, and with them fresh code and kept code, one processor and another.
 _OPTIONS: dict[str, Any] = {"error_model": "numpy"}
 _CALLED_BY_KERNELS = {**_OPTIONS, "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
+
+_LONGEST_COMPILING_S = 300.0
 
 
 def element(function: Function) -> Function:
@@ -46,43 +50,73 @@ def _kept(function: Function) -> Function:
     if numba.config.DISABLE_JIT:
         return function
     compiled: Any = function
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = before or str(_folder())
     try:
-        compiled.enable_caching()
+        compiled._cache = _Cache(compiled.py_func)
     except RuntimeError:
         return function
-    finally:
-        numba.config.CACHE_DIR = before
-    files = compiled._cache._cache_file
-    # Numba takes cached code for fresh as long as the function's own file is unchanged, although
-    # it contains what the function calls; here any change in these folders makes it stale.
-    files._source_stamp = _stamp()
-    compiled._cache._cache_file = _Files(files)
+    compiled._cache._cache_file = _Files(compiled._cache._cache_file)
     return function
 
 
-@cache
-def _folder() -> Path:
-    """Return where machine code is kept, by our version and the processor."""
-    import llvmlite.binding
-    from platformdirs import user_cache_path
+class _Locator(UserWideCacheLocator):  # type: ignore[misc]
+    """Finds machine code by what the sources say, not by where they lie.
 
-    processor = llvmlite.binding.get_host_cpu_name()
-    return user_cache_path("cdpr-designer", appauthor=False) / f"{__version__}-{processor}"
+    Numba takes cached code for fresh as long as the function's own file is unchanged, although it
+    contains what the function calls; here any change of what is compiled makes it stale. So every
+    environment finds what another has compiled from the same sources.
+    """
+
+    def __init__(self, py_func: Any, py_file: str) -> None:
+        self._py_file = py_file
+        self._lineno = py_func.__code__.co_firstlineno
+        kept = numba.config.CACHE_DIR or user_cache_path("cdpr-designer", appauthor=False)
+        self._cache_path = str(Path(kept) / _compiler_and_sources() / Path(py_file).parent.name)
+
+    def get_source_stamp(self) -> str:
+        return sha256(Path(self._py_file).read_bytes()).hexdigest()
+
+
+class _Implementation(CompileResultCacheImpl):  # type: ignore[misc]
+    _locator_classes = (_Locator,)
+
+
+class _Cache(FunctionCache):  # type: ignore[misc]
+    _impl_class = _Implementation
+
+
+@cache
+def _compiler_and_sources() -> str:
+    """Return a name of the compiler, the processor and all sources that hold compiled functions."""
+    rooms = ("kernel", "physics", "proof/enclosure")
+    folders = [Path(__file__).parents[1] / room for room in rooms]
+    sources = [source for folder in folders for source in sorted(folder.glob("*.py"))]
+    digest = sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
+    return f"{llvmlite.binding.get_host_cpu_name()}-numba-{numba.__version__}-{digest[:16]}"
 
 
 class _Files:
-    """Numba's files of one kernel, of which a damaged one is written anew.
+    """Numba's files of one kernel: written once, and anew where they are damaged.
 
-    Each has a digest: object code with a byte wrong would end the process.
+    While a process compiles, others that want the same kernel wait for its code. Each file has a
+    digest: object code with a byte wrong would end the process.
     """
 
     def __init__(self, files: Any) -> None:
         self._files = files
+        self._compiling = FileLock(files._index_path + ".lock", timeout=_LONGEST_COMPILING_S)
 
     def load(self, key: object) -> Any:
-        """Return what is kept under a key; None for nothing, or what is not to be read."""
+        """Return what is kept under a key; None if this process is to compile it and `save` it."""
+        cached = self._read(key)
+        if cached is None:
+            with suppress(OSError, NotImplementedError):  # also where the others take too long
+                self._compiling.acquire()
+            cached = self._read(key)
+            if cached is not None:
+                self._compiling.release()
+        return cached
+
+    def _read(self, key: object) -> Any:
         try:
             cached = self._files.load(key)
             return None if cached is None else _checked(*cached)
@@ -99,6 +133,7 @@ class _Files:
         packed = dumps(data)
         with suppress(OSError):
             self._files.save(key, (sha256(packed).digest(), packed))
+        self._compiling.release(force=True)
 
 
 def _checked(digest: bytes, packed: bytes) -> Any:
@@ -111,15 +146,6 @@ class _Damage:
     """Who is told of damaged files."""
 
     tell: Callable[[str], None] = staticmethod(lambda _: None)
-
-
-@cache
-def _stamp() -> str:
-    """Return a digest of all sources that hold compiled functions."""
-    rooms = ("kernel", "physics", "proof/enclosure")
-    folders = [Path(__file__).parents[1] / room for room in rooms]
-    sources = [source for folder in folders for source in sorted(folder.glob("*.py"))]
-    return sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
 
 
 def tell_of_compiling(tell: Callable[[], None], damaged: Callable[[str], None]) -> None:

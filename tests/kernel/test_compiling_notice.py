@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,7 @@ import llvmlite.binding
 import numba
 import pytest
 
-from designer import __version__
+import designer
 from designer.kernel import compiling
 
 CODE = """
@@ -25,9 +26,10 @@ for length in ([2.0], [2.0, 3.0]):
 """
 
 
-def told(**environment: str) -> list[str]:
+def told(sources: Path | None = None, **environment: str) -> list[str]:
     return subprocess.run(
         [sys.executable, "-c", CODE],
+        cwd=sources,
         env={**os.environ, **environment},
         check=True,
         capture_output=True,
@@ -76,13 +78,20 @@ def test_a_damaged_file_is_compiled_again(
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="XDG folders")
-def test_it_is_kept_by_version_and_processor(tmp_path: Path) -> None:
+def test_a_copy_of_the_sources_finds_what_another_compiled(tmp_path: Path) -> None:
     environment = {"NUMBA_CACHE_DIR": "", "XDG_CACHE_HOME": str(tmp_path)}
     assert [told(**environment) for _ in range(2)] == [["compiling"], []]
     (folder,) = (tmp_path / "cdpr-designer").iterdir()
-    assert folder.name == f"{__version__}-{llvmlite.binding.get_host_cpu_name()}"
+    processor = llvmlite.binding.get_host_cpu_name()
+    assert folder.name.startswith(f"{processor}-numba-{numba.__version__}-")
+    copy = tmp_path / "elsewhere"
+    shutil.copytree(Path(designer.__file__).parent, copy / "designer")
+    assert told(copy, **environment) == []
+    with (copy / "designer" / "kernel" / "linear.py").open("a", encoding="utf-8") as source:
+        source.write("# Another source.\n")
+    assert told(copy, **environment) == ["compiling"]
 
 
 def test_where_no_folder_takes_it_each_process_compiles(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("numba.core.caching.CacheImpl._locator_classes", [])
+    monkeypatch.setattr(compiling._Implementation, "_locator_classes", ())
     assert compiling.kernel(_twice)(21.0) == 42.0
