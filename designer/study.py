@@ -230,6 +230,7 @@ class DeclaredEffect:
 class Study:
     """A robot, its load, where it works, and how its cable is to be chosen.
 
+    ``material`` is the family that is sized, its allowable stress that at the exit point.
     ``known_effects`` are those that ``effects`` may declare and a diagnosis may find; ``family``
     is the grade that ``material`` stands for, None where the study gives its figures.
     ``session_effects`` are effects of single sessions of the measurements, in their order.

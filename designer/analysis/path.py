@@ -2,14 +2,16 @@ r"""What the winches do along a path: lengths, tensions, speeds, power and energ
 
 At each instant the platform is in balance with its inertia (`designer.model.motion`); cables follow
 as if at rest, so that their own oscillations and inertia are left out, as is that of drums and
-motors. With T the tension at the exit point and v the rate of the unstrained length paid out, the
-winch gives
+motors. With T the tension at the drum, which differs from that at the exit point by the losses of
+the sheaves (`designer.model.winches`), and v the rate of the unstrained length paid out, the winch
+gives
 
 .. math::  P = -T\,(1 + T / 2 EA)\, v
 
-to a rope that lies on the drum free of load: work at the exit point and what the rope takes along
-as strain, so that the sum over the winches is the rate of the energy of platform and cables. Its
-motor gives P/η where that is positive, and takes η P where the load drives the winch.
+to a rope that lies on the drum free of load: work at the drum and what the rope takes along as
+strain, so that without losses of sheaves the sum over the winches is the rate of the energy of
+platform and cables. Its motor gives P/η where that is positive, and takes η P where the load drives
+the winch.
 """
 
 from __future__ import annotations
@@ -175,7 +177,7 @@ def path_requirements(analysis: Analysis) -> Iterator[Requirement]:
          winches.speed_max_m_per_s, "speed_max", "speed_m_per_s"),
         ("motor_speed", "Motor speed", "v i / ((D + d) / 2), rope in the innermost layer", "rad/s",
          winches.motor_speed_rad_per_s, "motor.speed", "motor_speed_rad_per_s"),
-        ("motor_power", "Motor power", "T v / η hauling in, η T v paying out", "W",
+        ("motor_power", "Motor power", "T v / η hauling in, η T v paying out, T at the drum", "W",
          winches.motor_power_W, "motor.power", "power_W"),
     )  # fmt: skip
     for id_, title, formula, unit, limit, field, quantity in asked:
@@ -220,19 +222,19 @@ def _extreme(name: str, values: Sequence[Any]) -> Any:
 
 def _table(cases: Sequence[PathCase]) -> Iterator[list[str]]:
     n = cases[0].statics.robot.n_cables
-    speeds, powers = (
+    at_drums, speeds, powers = (
         [f"{name}_{k}_{unit}" for k in range(1, n + 1)]
-        for name, unit in (("speed", "m_per_s"), ("power", "W"))
+        for name, unit in (("drum_tension", "N"), ("speed", "m_per_s"), ("power", "W"))
     )
     yield [
         *("load_case", "time_s", *POSITION, *ROTATION_VECTOR),
-        *(*length_names(n), *tension_names(n), *speeds, *powers, "verdict"),
+        *(*length_names(n), *tension_names(n), *at_drums, *speeds, *powers, "verdict"),
     ]
     for case in cases:
-        figures = (case.statics.length_m, case.tension_N, case.speed_m_per_s, case.power_W)
+        of_ropes = case.statics.length_m, case.tension_N, case.drum_tension_N
         rows = zip(
             np.column_stack([case.motion.time_s, case.motion.places]),
-            np.hstack(figures),
+            np.hstack([*of_ropes, case.speed_m_per_s, case.power_W]),
             case.statics.verdict,
             strict=True,
         )

@@ -61,10 +61,15 @@ class PathCase:
         return np.asarray(np.gradient(length_m, time_s, axis=0, edge_order=2))
 
     @cached_property
+    def drum_tension_N(self) -> FloatArray:
+        """At the drums, behind all sheaves (n_instants, n_cables) [N]."""
+        return self.winches.drum_tension_N(self.tension_N, self.speed_m_per_s > 0.0)
+
+    @cached_property
     def power_W(self) -> FloatArray:
         """Of each motor, negative where the load drives it (n_instants, n_cables) [W]."""
-        strain = self.tension_N / self.statics.axial_stiffness_N
-        given = -self.tension_N * (1.0 + 0.5 * strain) * self.speed_m_per_s
+        strain = self.drum_tension_N / self.statics.axial_stiffness_N
+        given = -self.drum_tension_N * (1.0 + 0.5 * strain) * self.speed_m_per_s
         efficiency = self.winches.efficiency
         return np.where(given > 0.0, given / efficiency, given * efficiency)
 
@@ -117,16 +122,15 @@ class PathCase:
         drawn, back = self.energy_J
         torque, rms, turning = self.torque_Nm, self.rms_torque_Nm, self.motor_speed_rad_per_s
         for k in range(self.statics.robot.n_cables):
-            tension, speed, power = (
-                self.tension_N[:, k],
-                self.speed_m_per_s[:, k],
-                self.power_W[:, k],
-            )
+            tension, drum_tension = self.tension_N[:, k], self.drum_tension_N[:, k]
+            speed, power = self.speed_m_per_s[:, k], self.power_W[:, k]
             yield {
                 "load_case": self.name,
                 "cable": k + 1,
                 "tension_max_N": tension.max(),
                 "tension_min_N": tension.min(),
+                "drum_tension_max_N": drum_tension.max(),
+                "drum_tension_min_N": drum_tension.min(),
                 "length_max_m": self.statics.length_m[:, k].max(),
                 "length_min_m": self.statics.length_m[:, k].min(),
                 "paying_out_max_m_per_s": max(speed.max(), 0.0),

@@ -93,19 +93,26 @@ def bending_of(
     if not case.is_held:
         return ()
     statics, winches = case.statics, case.winches
+    is_hauled = np.diff(statics.length_m, axis=0) < 0.0
+    step_N = 0.5 * (case.tension_N[1:] + case.tension_N[:-1])
+    # The larger of the tensions on both sides of the sheave at the exit point.
+    sheave_N = step_N / np.where(is_hauled, winches.sheave_efficiency, 1.0)
     rope_m = float(np.max(rope_diameter_m(case.loaded.cable)))
-    bent = [(statics.free_length_m, sheave_diameter_m), (statics.length_m, sheave_diameter_m)]
+    ends_m = statics.free_length_m, statics.length_m
+    bent = [(end_m, sheave_diameter_m, sheave_N) for end_m in ends_m]
     if winches.positions_m is not None and winches.drum_diameter_m is not None:
         distance_m = np.linalg.norm(winches.positions_m - statics.robot.exit_points_m, axis=1)
         unstrained_m = distance_m / (1.0 + case.tension_N / statics.axial_stiffness_N)
-        bent.append((statics.length_m + unstrained_m, winches.drum_diameter_m + rope_m))
+        drum_m = winches.drum_diameter_m + rope_m
+        bent.append(
+            (statics.length_m + unstrained_m, drum_m, winches.drum_tension_N(step_N, ~is_hauled))
+        )
     cables = []
     for k in range(statics.robot.n_cables):
-        cable, passes = _bending([end_m[:, k] for end_m, _ in bent])
+        cable, passes = _bending([end_m[:, k] for end_m, *_ in bent])
         if life is not None:
-            step_N = 0.5 * (case.tension_N[1:, k] + case.tension_N[:-1, k])
-            over_m = [diameter_m for _, diameter_m in bent if diameter_m is not None]
-            damage = _damage(passes, over_m, step_N, rope_m, cable.bent_m, life)
+            over = [(over_m, each_N[:, k]) for _, over_m, each_N in bent if over_m is not None]
+            damage = _damage(passes, over, rope_m, cable.bent_m, life)
             cable = replace(cable, damage=damage)
         cables.append(cable)
     return tuple(cables)
@@ -122,15 +129,17 @@ def _bending(ends_m: Sequence[FloatArray]) -> tuple[CableBending, list[BoolArray
 
 def _damage(
     passes: Sequence[BoolArray],
-    over_m: Sequence[float],
-    step_N: FloatArray,
+    over: Sequence[tuple[float, FloatArray]],
     rope_m: float,
     bent_m: float,
     life: RopeLife,
 ) -> FloatArray:
-    """Return the share of its life (n_places,) that a run takes, half a cycle a passage."""
+    """Return the share of its life (n_places,) that a run takes, half a cycle a passage.
+
+    Of each end ``over`` has the diameter that it bends over, and the tension there in each step.
+    """
     b, damage = (life.b0, life.b1, life.b2, life.b3), np.zeros(_PLACES)
-    for of_end, diameter_m in zip(passes, over_m, strict=True):
+    for of_end, (diameter_m, step_N) in zip(passes, over, strict=True):
         borne = borne_cycles(
             step_N, rope_m, diameter_m, bent_m, b, life.wire_strength_Pa, life.core_factor
         )

@@ -116,7 +116,8 @@ def _cable(study: Study, plugins: Plugins, bars: ProgressBars) -> tuple[Cable, s
     if on_machine is not None:
         strength_N, selection = on_machine.minimum_breaking_load_N or math.inf, study.selection
         if selection is not None:
-            strength_N *= selection.termination_efficiency / selection.safety_factor
+            reeving = study.robot.winches.reeving_efficiency
+            strength_N *= min(selection.termination_efficiency, reeving) / selection.safety_factor
         return on_machine.cable(strength_N), "the cable on the machine"
     bars("no measurements.cable is declared: first the rope of the design")
     assert study.workspace is not None  # the options have been checked

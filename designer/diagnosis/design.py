@@ -93,7 +93,7 @@ def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:
     old_use = None  # where the product chosen before is as good as any
     before, after = selected.product, last.product
     if before is not None and (after is None or after.name != before.name):
-        cable = Allowance.of(study.selection).cable(before.grade, before.size)
+        cable = Allowance.of(study.selection, study.robot.winches).cable(before.grade, before.size)
         old_use = _use(last.built.of_products, study.workspace, cable)
     return replace(
         diagnosis,
@@ -153,17 +153,17 @@ def _use(built: AsBuilt, workspace: Workspace, cable: Cable) -> Use:
 def mounted_use(study: Study) -> Use | None:
     """Return what the cable on the machine meets, with the effects that the study declares.
 
-    Its allowable tension is as for a product: end fittings or bending, whichever takes more, and
-    the safety factor. None where the study lacks a part of that.
+    Its allowable tension is as for a product: end fittings, or bending with the losses of the
+    sheaves, whichever takes more, and the safety factor. None where the study lacks a part of that.
     """
     rope, workspace, selection = study.measurements, study.workspace, study.selection
     if rope is None or workspace is None or selection is None:
         return None
-    bending = 1.0
+    bending, reeving = 1.0, study.robot.winches.reeving_efficiency
     if selection.sheave_diameter_m and rope.diameter_m:
         bending = bending_efficiency(selection.sheave_diameter_m / rope.diameter_m)
     if rope.minimum_breaking_load_N is None or math.isnan(bending):  # outside the rule
         return None
-    efficiency = min(selection.termination_efficiency, bending)
+    efficiency = min(selection.termination_efficiency, bending * reeving)
     allowable_N = rope.minimum_breaking_load_N * efficiency / selection.safety_factor
     return _use(as_built_by(study, mounted=True), workspace, rope.cable(allowable_N))

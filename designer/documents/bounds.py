@@ -83,6 +83,9 @@ BOUNDS: Mapping[str, Bound] = {
     "path acceleration": Bound(units.ACCELERATION, 1e-6, 1e3, "no winch pulls so hard"),
     "ice": Bound(units.LENGTH, 1e-5, 0.5, "from rime to what breaks masts"),
     "safety factor": Bound(units.NUMBER, 1.0, 100.0, "lifts of persons have 12"),
+    "sheave efficiency": Bound(
+        units.FRACTION, 0.5, 1.0, "half is what a rope keeps that slides over a fixed body"
+    ),
     "efficiency": Bound(units.FRACTION, 0.01, 1.0, "a fitting keeps a part of the breaking load"),
     "temperature change": Bound(units.TEMPERATURE_CHANGE, -300.0, 1000.0, "steel lasts no further"),
     "temperature": Bound(units.TEMPERATURE, -200.0, 1000.0, "steel lasts no further"),

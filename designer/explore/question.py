@@ -178,7 +178,7 @@ class Question:
         """Return a rope with what it may be used to in a load case."""
         grade = self._grade_of(rope)
         (size,) = grade.sizes
-        allowance = Allowance.of(self.selection.under(case))
+        allowance = Allowance.of(self.selection.under(case), self.robot.winches)
         if not allowance.efficiency(grade, size.diameter_m) > 0.0:
             raise DesignerError(
                 f"{rope.label}: the sheave is thinner than the rope, or than a fibre rope may be "

@@ -27,8 +27,8 @@ class Winches(checked.Value):
     layers : int
         Of rope on the drum at most; forces on the outermost are counted.
     gear_ratio, efficiency : float
-        Turns of the motor for one of the drum, and the share of its work that reaches the exit
-        point: gear, drum and sheaves together.
+        Turns of the motor for one of the drum, and the share of its work that the drum gives to
+        the rope: gear and drum, with the sheaves where ``sheave_efficiency`` is 1.
     motor_torque_Nm : float or None
         Torque that the motor may give while it holds or slowly pulls [N·m].
     speed_max_m_per_s : float or None
@@ -37,6 +37,10 @@ class Winches(checked.Value):
         Fastest that the motor turns, and the power that it may give or take [rad/s, W].
     drum : Drum or None
         What the rope is spooled on, where its length is known.
+    sheave_efficiency : float
+        Tension behind a sheave over that before it, in the sense in which the rope runs.
+    sheaves : int
+        Between exit point and drum, that at the exit point among them.
     """
 
     tension_max_N: checked.Positive | None = None
@@ -50,6 +54,24 @@ class Winches(checked.Value):
     motor_speed_rad_per_s: checked.Positive | None = None
     motor_power_W: checked.Positive | None = None
     drum: Drum | None = None
+    sheave_efficiency: checked.Efficiency = 1.0
+    sheaves: checked.Count = 1
+
+    @property
+    def reeving_efficiency(self) -> float:
+        """Of all sheaves of a cable together, η_s to the power of their number."""
+        return float(self.sheave_efficiency**self.sheaves)
+
+    def drum_tension_N(
+        self, tension_N: FloatArray, is_driven: BoolArray | bool = False
+    ) -> FloatArray:
+        """Return the tension at the drum at one at the exit point (...) [N].
+
+        With n sheaves of efficiency η_s between them T / η_s^n where the winch pulls, or is about
+        to, and T η_s^n where the rope is paid out.
+        """
+        kept = self.reeving_efficiency
+        return np.asarray(tension_N * np.where(is_driven, kept, 1.0 / kept))
 
     def torque_Nm(
         self,
@@ -60,12 +82,14 @@ class Winches(checked.Value):
         """Return the motor's torque at a tension at the exit point (...) [N·m].
 
         About the centre of the rope in the outermost layer, of layers as far apart as the rope is
-        thick: M = T (D + (2 k - 1) d) / (2 i η) where it pulls, η² of that where it is driven.
+        thick: M = T (D + (2 k - 1) d) / (2 i η) where it pulls, η² of that where it is driven, with
+        T at the drum (`drum_tension_N`).
         """
         assert self.drum_diameter_m is not None
         radius_m = 0.5 * (self.drum_diameter_m + (2 * self.layers - 1) * rope_diameter_m)
         losses = np.where(is_driven, self.efficiency, 1.0 / self.efficiency)
-        return np.asarray(tension_N * radius_m / self.gear_ratio * losses)
+        drum_tension_N = self.drum_tension_N(tension_N, is_driven)
+        return np.asarray(drum_tension_N * radius_m / self.gear_ratio * losses)
 
     def without(self, cable: int) -> Winches:
         """Return the winches without that of one cable, counted from 1."""

@@ -128,7 +128,7 @@ def is_allowed(grade: Grade, named: Sequence[str] | None) -> bool:
 
 def candidates_of(selection: Selection, grades: Sequence[Grade], built: AsBuilt) -> list[Candidate]:
     """Return every size of these grades that the sheave allows, with its figures as built."""
-    allowance = Allowance.of(selection)
+    allowance = Allowance.of(selection, built.robot.winches)
     sizes = ((g, s, allowance.efficiency(g, s.diameter_m)) for g in grades for s in g.sizes)
     return [
         Candidate(grade, size, built.of_products.cable(allowance.cable(grade, size)), efficiency)

@@ -142,14 +142,16 @@ def _of_cables(least_N: float, sag_max: float | None) -> Iterator[Criterion]:
 
 def _of_winches(winches: Winches) -> Iterator[Criterion]:
     """Yield what is asked of the winches in every equilibrium."""
+    kept = winches.reeving_efficiency
+    losses = "" if kept == 1.0 else f", over the {kept:.4g} that its sheaves keep of it,"
     if winches.tension_max_N is not None:
         yield Criterion(
             id="winch_tension",
             title="Winch",
-            formula="largest tension of a cable at its exit point ≤ that of a winch",
+            formula=f"largest tension of a cable at its exit point{losses} ≤ that of a winch",
             source=f"robot.winches.tension_max; {WHERE}",
             unit="N",
-            quantity=lambda _, statics: statics.exit_tension_N,
+            quantity=lambda _, statics: winches.drum_tension_N(statics.exit_tension_N),
             limits=(winches.tension_max_N,),
             kind="at_most",
             at_rest_after_loss=True,  # brakes have to hold it as well
@@ -158,7 +160,8 @@ def _of_winches(winches: Winches) -> Iterator[Criterion]:
         yield Criterion(
             id="winch_torque",
             title="Motor",
-            formula="M = T (D + (2k - 1) d) / (2 i η) ≤ torque of the motor; rope in layer k",
+            formula="M = T (D + (2k - 1) d) / (2 i η) ≤ torque of the motor; rope in layer k, T at "
+            "the drum",
             source=f"robot.winches.motor.torque; {WHERE}",
             unit="N*m",
             quantity=_motor_torque_Nm,

@@ -17,6 +17,11 @@ Typical efficiencies of end fittings: poured socket 1.0, steel ferrule 0.89, han
 (0027/ND, 7.7.1, as factors 1.00, 1.12 and 1.25); swaged socket 0.95, clips 0.8, wedge socket 0.75
 to 0.95 (US Army TM 5-3810-305-10, table 4).
 
+Between exit point and drum a rope that is hauled in bears the tension at the exit point over the
+efficiency of the sheaves, where it is bent and has no fitting: there :math:`E_B` counts times that
+efficiency. Of a cable that rises from its exit point the tension at the platform is larger than at
+the exit point, and this on the safe side.
+
 The allowable tension is the minimum breaking load times that efficiency over the safety factor.
 The rule is for a rope at rest; fatigue of a rope that runs over sheaves is another matter.
 """
@@ -28,6 +33,7 @@ from dataclasses import dataclass
 
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable, Material
+from designer.model.winches import Winches
 from designer.study import Selection
 
 
@@ -39,14 +45,17 @@ class Allowance:
     termination_efficiency: float = 1.0  # Share of the breaking load that the end fitting keeps
     # Diameter that the rope is bent over [m]; None leaves bending out
     sheave_diameter_m: float | None = None
+    # Tension at the exit point over that at the drum, of a rope that is hauled in
+    reeving_efficiency: float = 1.0
 
     @classmethod
-    def of(cls, selection: Selection) -> Allowance:
+    def of(cls, selection: Selection, winches: Winches) -> Allowance:
         """Return what a study asks for."""
         return cls(
             selection.safety_factor,
             selection.termination_efficiency,
             selection.sheave_diameter_m,
+            winches.reeving_efficiency,
         )
 
     def bending_efficiency(self, grade: Grade, diameter_m: float) -> float:
@@ -61,7 +70,7 @@ class Allowance:
 
     def efficiency(self, grade: Grade, diameter_m: float) -> float:
         """Return the share of the breaking load that counts; NaN outside the rule."""
-        bending = self.bending_efficiency(grade, diameter_m)
+        bending = self.bending_efficiency(grade, diameter_m) * self.reeving_efficiency
         return math.nan if math.isnan(bending) else min(bending, self.termination_efficiency)
 
     def cable(self, grade: Grade, size: Size) -> Cable:

@@ -285,10 +285,12 @@ def _breaking_load(result: CaseResult, selection: Selection) -> Requirement:
     asked, verification = selection.under(result.case), result.verification
     factor = asked.safety_factor
     is_known = verification.is_refined or not verification.holds
+    kept = result.loaded.robot.winches.reeving_efficiency
+    bending = "bending" if kept == 1.0 else f"bending times the {kept:.4g} that sheaves keep"
     return Requirement(
         id="breaking_load",
         title="Breaking load",
-        formula=f"T ≤ η F / S; η the smaller of end fitting and bending, S = {factor:g}",
+        formula=f"T ≤ η F / S; η the smaller of end fitting and {bending}, S = {factor:g}",
         source=f"Noble Denton 0027/ND, 7.6 to 7.8; {asked.factor_source}",
         state=State.OPEN if not is_known else State.HOLDS if verification.holds else State.FAILS,
         load_case=result.case.name,

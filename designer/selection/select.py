@@ -196,7 +196,8 @@ class _SelectionRun:
         self, grades: Sequence[tuple[Grade, Sequence[Candidate]]]
     ) -> list[ContinuousOptimum]:
         """Return the continuous optimum of each grade with candidates."""
-        allowance, of_grades = Allowance.of(self.selection), [grade for grade, _ in grades]
+        of_grades = [grade for grade, _ in grades]
+        allowance = Allowance.of(self.selection, self.built.robot.winches)
         if not self.explains:
             unbent = replace(allowance, sheave_diameter_m=None)
             families = [unbent.family(g, g.thickest.diameter_m) for g in of_grades]

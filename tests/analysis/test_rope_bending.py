@@ -23,7 +23,7 @@ LIFE: dict[str, Any] = {
 ROWS = ((5.0, 4.0, 3.0), (7.0, 4.0, 4.5), (5.5, 5.0, 3.0), (7.0, 3.5, 5.0))
 
 
-def moving(folder: Path, *, has_drum: bool) -> Analysis:
+def moving(folder: Path, *, has_drum: bool, **of_winches: Any) -> Analysis:
     """The crane of the pairs there and back along rows, its winches near its exit points."""
     path = np.column_stack([2.0 * np.arange(len(ROWS)), ROWS])
     np.savetxt(folder / "path.csv", path, "%.15g", ",", header="time_s,x_m,y_m,z_m", comments="")
@@ -36,7 +36,7 @@ def moving(folder: Path, *, has_drum: bool) -> Analysis:
         winches = {
             "positions": positions.tolist(), "drum_diameter": 0.25, "layers": 1,
             "motor": {"torque": 1e6},
-        }  # fmt: skip
+        } | of_winches  # fmt: skip
         study["robot"] = study["robot"] | {"winches": winches}
     return analysed(study, folder)
 
@@ -50,11 +50,12 @@ def borne(tension_N: float, d_mm: float, ratio: float, zone: float) -> float:
     return size * length * 10 ** (LIFE["b0"] + power * lg(tension_N / d_mm**2) + 5.5 * lg(ratio))
 
 
-@pytest.mark.parametrize("has_drum", [False, True])
+@pytest.mark.parametrize(("has_drum", "kept"), [(False, 1.0), (True, 1.0), (True, 0.9)])
 def test_cycles_and_damage_are_those_of_a_rope_that_is_walked(
-    tmp_path: Path, has_drum: bool
+    tmp_path: Path, has_drum: bool, kept: float
 ) -> None:
-    analysis = moving(tmp_path, has_drum=has_drum)
+    losses = {"sheave_efficiency": kept, "sheaves": 3} if kept < 1.0 else {}
+    analysis = moving(tmp_path, has_drum=has_drum, **losses)
     path = analysis.path
     assert path is not None
     (case,), (cables,) = path.cases, path.bending
@@ -79,6 +80,10 @@ def test_cycles_and_damage_are_those_of_a_rope_that_is_walked(
                     if before is None or not passed:
                         continue
                     mean = 0.5 * (tension + case.tension_N[i - 1, k])
+                    if length < case.statics.length_m[i - 1, k]:  # hauled in, pulled at the drum
+                        mean = mean / (kept * kept * kept if end == 2 else kept)
+                    elif end == 2:
+                        mean = mean * kept * kept * kept
                     over = 0.25 + d_m if end == 2 else 0.3
                     damage += 0.5 / borne(mean, 1e3 * d_m, over / d_m, zone)
                     sheave += 0.5 * (end < 2)

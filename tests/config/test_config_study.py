@@ -163,6 +163,8 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("robot.winches.layers", "default", "1"),
         Entry("robot.winches.gear_ratio", "default", "1"),
         Entry("robot.winches.efficiency", "default", "1"),
+        Entry("robot.winches.sheave_efficiency", "default", "1"),
+        Entry("robot.winches.sheaves", "default", "1"),
         Entry("robot.winches.motor", "default", "none"),
         Entry("robot.winches.drum", "default", "none"),
         Entry("robot.attached", "default", "none"),

@@ -33,6 +33,16 @@ def test_winches_need_a_workspace(faults_of: Callable[[str], list[Fault]]) -> No
         ("tension_max: 0", "tension_max", "0 is out of range"),
         ("tension_max: 3 m", "tension_max", "has the unit meter"),
         ("tension_max: [1 kN, 2 kN]", "tension_max", "a list is not a number"),
+        ("sheave_efficiency: 0", "sheave_efficiency", "0 is out of range"),
+        ("sheave_efficiency: 1.02", "sheave_efficiency", "1.02 is out of range"),
+        ("sheave_efficiency: 0.96 m", "sheave_efficiency", "has the unit meter"),
+        ("sheave_efficiency: 96 %", "sheave_efficiency", "has the unit percent"),
+        ("sheave_efficiency: .nan", "sheave_efficiency", "nan"),
+        ("sheave_efficiency: [0.96]", "sheave_efficiency", "a list is not a number"),
+        ("sheave_efficiency: 0.96, sheaves: 0", "sheaves", "0"),
+        ("sheave_efficiency: 0.96, sheaves: 21", "sheaves", "21"),
+        ("sheave_efficiency: 0.96, sheaves: 1.5", "sheaves", "1.5"),
+        ("sheaves: 2", "sheaves", "nothing is lost on them"),
     ],
 )
 def test_mistakes(
@@ -98,3 +108,18 @@ def test_winches_that_do_not_fit(
     (fault,) = faults_of(STUDY % given + WORKSPACE)
     assert fault.field == f"robot.winches.{field}"
     assert problem in fault.problem
+
+
+@pytest.mark.parametrize(
+    ("given", "kept"),
+    [
+        ("sheave_efficiency: 0.96", 0.96),
+        ("sheave_efficiency: 0.9, sheaves: 3", 0.729),
+        ("sheave_efficiency: 1, sheaves: 4", 1.0),
+        ("tension_max: 5 kN", 1.0),
+    ],
+)
+def test_sheaves(study_of: Callable[[str], Study], given: str, kept: float) -> None:
+    study = study_of(STUDY % given + WORKSPACE)
+    assert study.robot.winches.reeving_efficiency == pytest.approx(kept)
+    assert study.material.allowable_stress_Pa == pytest.approx(180e6 * kept)

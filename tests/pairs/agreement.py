@@ -20,6 +20,7 @@ from pairs.reference import Pose, Problem, State, feasible, hang, load_on, settl
 from pairs.scenario import (
     growth_of,
     in_motion,
+    kept_by_sheaves,
     level_directions,
     problem_of,
     random_places,
@@ -288,7 +289,9 @@ QUANTITIES = {
     "stability": lambda state, _: least_stiffness_N_per_m(state),
     "stiffness": lambda state, _: least_stiffness_N_per_m(state),
     "sag": lambda state, _: -sag_ratio(state),
-    "winch_tension": lambda state, _: -float(np.linalg.norm(state.exit_pull_N, axis=1).max()),
+    "winch_tension": lambda state, text: (
+        -float(np.linalg.norm(state.exit_pull_N, axis=1).max()) / kept_by_sheaves(text)
+    ),
     "floor": lambda state, _: lowest_m(state),
     "clearance": lambda state, _: clearance_m(state),
     "excitation": _excitation,

@@ -410,6 +410,12 @@ OPTIONS: tuple[Option, ...] = (
     Option("platform_frequency", "frequency of the platform", ALL, _frequency),
     Option("duty_class", "duty class", ALL, _duty_class),
     Option("winch_tension", "largest tension", ALL, _set("robot.winches.tension_max", 900.0)),
+    Option(
+        "sheave_losses",
+        "losses on two sheaves",
+        ALL,
+        lambda s: s["robot"].setdefault("winches", {}).update(sheave_efficiency=0.96, sheaves=2),
+    ),
     Option("spooling", "layers on the drums", ALL, _spooling),
     Option(
         "attached",

@@ -66,6 +66,14 @@ def level_directions(study: Data, up: np.ndarray, count: int, rng: np.random.Gen
     return level / np.linalg.norm(level, axis=1, keepdims=True)
 
 
+def kept_by_sheaves(study: Data) -> float:
+    """Return the tension at the exit point over that which a winch pulls to haul the rope in."""
+    winches, kept = study["robot"].get("winches", {}), 1.0
+    for _ in range(winches.get("sheaves", 1)):
+        kept *= winches.get("sheave_efficiency", 1.0)
+    return kept
+
+
 def allowable_of(study: Data, case: Data, grade: Data, size: Data) -> float:
     """Return breaking load times efficiency over safety factor [N]."""
     selection = study["selection"]
@@ -73,9 +81,12 @@ def allowable_of(study: Data, case: Data, grade: Data, size: Data) -> float:
     factor = case.get("safety_factor") or ZP.get(selection.get("duty_class"), factor)
     kept = case.get("termination_efficiency") or selection.get("termination_efficiency", 1.0)
     sheave = selection.get("sheave_diameter")
+    bent = 1.0
     is_fibre = grade.get("material") not in (None, "steel", "stainless steel")
     if sheave is not None and not (is_fibre and "sheave_ratio" in grade):
-        kept = min(kept, 1.0 - 0.5 / np.sqrt(sheave / size["diameter"]))
+        bent = 1.0 - 0.5 / np.sqrt(sheave / size["diameter"])
+    # Behind the sheaves the rope is bent and has no fitting.
+    kept = min(kept, bent * kept_by_sheaves(study))
     return size["minimum_breaking_load"] * kept / factor
 
 

@@ -8,6 +8,7 @@ import pytest
 from ropes import rope
 
 from designer.model.prism import Prism
+from designer.model.winches import Winches
 from designer.model.workspace import Workspace
 from designer.selection.efficiency import Allowance, bending_efficiency
 from designer.selection.select import select
@@ -73,7 +74,7 @@ def test_optimum_over_a_sheave_is_as_strong_as_itself(fast_robot, workspace) -> 
     grade = rope("a", [10.0, 20.0, 30.0, 40.0])
     (outcome,) = select(fast_robot, workspace, selection, [grade]).outcomes
     optimum = outcome.continuous_diameter_m
-    expected = Allowance.of(selection).family(grade, optimum)
+    expected = Allowance.of(selection, Winches()).family(grade, optimum)
     assert outcome.family.allowable_stress_Pa == pytest.approx(expected.allowable_stress_Pa)
     at_optimum = rope("b", [1e3 * optimum * 0.9999, 1e3 * optimum * 1.0001])
     below, above = select(fast_robot, workspace, selection, [at_optimum]).candidates

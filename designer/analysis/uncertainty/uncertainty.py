@@ -222,7 +222,7 @@ class _Sampling:
 
     def poses_of(self, size: Candidate) -> list[GoverningCandidates]:
         def rope_in(case: LoadCase) -> Cable:
-            allowance = Allowance.of(self.selection.under(case))
+            allowance = Allowance.of(self.selection.under(case), self.built.robot.winches)
             cable = self.built.of_products.cable(allowance.cable(size.grade, size.size))
             case_result = next(
                 result for result in (*size.cases, *self.chosen.cases) if result.case is case

@@ -172,7 +172,7 @@ _NO_USE = "robot.winches.motor: {torque: â€¦} or robot.winches.drum: {length: â€
 _NO_DRUM = "robot.winches.drum_diameter, which tells the torque of a tension"
 _PATH = "workspace.path"
 _NO_PATH = "workspace.path, along which speed and power are evaluated"
-_DRUM = "robot.winches.drum"
+_DRUM, _ETA = "robot.winches.drum", "robot.winches.sheave_efficiency"
 _LIFE, _SHEAVE = "selection.rope_life", "selection.sheave_diameter"
 _NO_DIAMETER = "robot.winches.drum_diameter beside it"
 _NO_SHEAVE = f"{_DRUM}.sheave_distance, which tells the angle"
@@ -193,6 +193,7 @@ _NEEDS = (
         (f"robot.winches.{name}", "robot.winches.motor", "there is no motor to drive it", _NO_MOTOR)
         for name in ("gear_ratio", "efficiency")
     ),
+    ("robot.winches.sheaves", _ETA, "nothing is lost on them", f"{_ETA}, or leave it out"),
     (
         "robot.winches.drum",
         "robot.winches.drum_diameter",

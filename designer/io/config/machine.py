@@ -132,7 +132,8 @@ class WinchesSection(Section):
     """The winches, one for each cable and all alike."""
 
     tension_max: fields.BreakingLoad | None = config_field("Largest tension of a winch")
-    """Largest tension of a cable at its exit point, in every load case."""
+    """Largest tension of a cable at its exit point, or with sheave_efficiency at its drum, in every
+    load case."""
     speed_max: fields.RopeSpeed | None = config_field("Largest speed of a winch")
     """Fastest that a winch hauls in or pays out, along workspace.path."""
 
@@ -147,7 +148,16 @@ class WinchesSection(Section):
     gear_ratio: fields.GearRatio = config_field("Gear ratio", 1.0)
     """Turns of the motor for one of the drum."""
     efficiency: fields.Efficiency = config_field("Efficiency of a winch", 1.0)
-    """Share of the motor's work that reaches the exit point: gear, drum and sheaves together."""
+    """Share of the motor's work that the drum gives to the rope: gear and drum, with the sheaves
+    where sheave_efficiency is left out."""
+    sheave_efficiency: fields.SheaveEfficiency = config_field("Efficiency of a sheave", 1.0)
+    """Tension before a sheave over that behind it as the rope is hauled in, bending and bearing
+    together. Between the last sheave and the drum the rope bears the tension at the exit point over
+    this to the power of sheaves, and its strength is held against that; paid out, times that. Wire
+    Rope Users Manual: 1/1.04 on rolling, 1/1.09 on plain bearings. A fit to measured data takes the
+    effect pulley_friction instead."""
+    sheaves: Annotated[int, WholeNumber(1, 20)] = config_field("Sheaves of a cable", 1)
+    """Between platform and drum, that at the exit point among them; left out, that one alone."""
     motor: MotorSection | None = None
     """The motor of a winch."""
     drum: DrumSection | None = None
@@ -169,6 +179,8 @@ class WinchesSection(Section):
             drum=None
             if self.drum is None or self.drum_diameter is None
             else self.drum.drum(self.drum_diameter, self.layers),
+            sheave_efficiency=self.sheave_efficiency,
+            sheaves=self.sheaves,
         )
 
 

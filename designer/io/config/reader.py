@@ -86,6 +86,9 @@ def study_of(
     measurements, uncertainty = section.measurements, section.uncertainty
     lines = {path_text(keys): node.line for keys, node in document.root.walk()}
     given = _with_family(tuple(entries), material, family)
+    # A member of the family bears at the drum what its stress allows, and less at the exit point.
+    kept = robot.winches.reeving_efficiency
+    material = replace(material, allowable_stress_Pa=kept * material.allowable_stress_Pa)
     return Study(
         name=section.name or path.stem,
         robot=robot,

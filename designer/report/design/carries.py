@@ -16,7 +16,7 @@ from designer.report import format as fmt
 _NAMES = {
     "payload": "Payload",
     "breaking_load": "Breaking load",
-    "efficiency": "End fittings and bending keep",
+    "efficiency": "End fittings, bending and sheaves keep",
     "modulus": "Stiffness EA",
     "linear_mass": "Mass of the rope",
 }

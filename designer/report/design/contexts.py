@@ -252,7 +252,7 @@ def fabrication(analysis: Analysis) -> Context | None:
     return {
         "cables": cables,
         "ropes": [*ropes.values()],
-        "allowance": Allowance.of(analysis.study.selection),
+        "allowance": Allowance.of(analysis.study.selection, analysis.study.robot.winches),
         "drum": cables[0].drum,
         "dead_turns": DEAD_TURNS,
     }

@@ -305,7 +305,7 @@ def _bending(study: Study, ropes: Iterable[tuple[Grade, Size]]) -> list[str]:
     if study.selection is None or study.selection.sheave_diameter_m is None:
         return []
     kept, sheave_m = (
-        Allowance.of(study.selection).bending_efficiency,
+        Allowance.of(study.selection, study.robot.winches).bending_efficiency,
         study.selection.sheave_diameter_m,
     )
     return [
