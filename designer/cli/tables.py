@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
     from designer.analysis.pose import PoseAnalysis
     from designer.diagnosis.check import Check
-    from designer.diagnosis.result import Diagnosis
+    from designer.diagnosis.result import Diagnosis, Estimate
     from designer.selection.groups.result import GroupChoice
     from designer.selection.result import SelectionResult
     from designer.study import Selection, Study
@@ -242,6 +243,12 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) 
     _print_written(folder, written)
 
 
+def _estimated(estimate: Estimate) -> str:
+    is_known = math.isfinite(estimate.std)
+    doubt = f"± {estimate.std:.2g}" if is_known else "(not determined by these rows)"
+    return f"{estimate.value:.4g} {doubt}"
+
+
 def _found(diagnosis: Diagnosis) -> Iterator[Row]:
     """Yield the effects, what speaks against the model, and what was withdrawn."""
     if diagnosis.measured.thinned:
@@ -249,9 +256,7 @@ def _found(diagnosis: Diagnosis) -> Iterator[Row]:
     if not diagnosis.measured.has_poses:
         yield "poses", escape(diagnosis.measured.origin_of_poses)
     for finding in diagnosis.findings:
-        values = ", ".join(
-            f"{name} = {e.value:.4g} ± {e.std:.2g}" for name, e in finding.parameters.items()
-        )
+        values = ", ".join(f"{name} = {_estimated(e)}" for name, e in finding.parameters.items())
         yield f"[bold]{escape(finding.effect.key)}[/]", escape(values)
         if finding.rivals or diagnosis.has_no_rivals(finding):
             yield "  or", escape(", ".join(finding.rivals) or "none in the list")

@@ -134,14 +134,14 @@ def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
     std[has_slope] = np.where(told.is_settled, std[has_slope], np.inf)
     covariance = np.where(np.isfinite(np.outer(std, std)), fit.covariance, np.nan)
     sizes = np.abs(np.nan_to_num(change * typical / std))
-    row = np.argmax(sizes, axis=0)
+    row, is_moved = np.argmax(sizes, axis=0), has_slope & np.isfinite(std)
     return Calibration(
         tuple(
             Calibrated(
                 *pair,
                 value=float(fit.vector[k]),
                 std=float(std[k]),
-                influence=float(sizes[row[k], k]) if np.isfinite(std[k]) else math.nan,
+                influence=float(sizes[row[k], k]) if is_moved[k] else math.nan,
                 influence_row=int(problem.measured.row_numbers[row[k]]),
             )
             for k, pair in enumerate(pairs)

@@ -12,6 +12,7 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.edge import steepness
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import score_covariances
+from designer.diagnosis.step_time import StepTime, step_time
 from designer.effects.effect import Effect, Setting, Values
 
 _JUMP = 1e3
@@ -247,6 +248,9 @@ def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> Floa
     predicted = problem.in_noise(settings)
     slopes = []
     for p in own.effect.parameters:
+        if p.is_step_time:
+            slopes.append(np.where(is_read, 0.0, np.nan))
+            continue
         value = own.values[p.name]
         # So short that one side will do, and far above the solver's residual.
         step = 1e-3 * max(p.typical, 0.1 * abs(value - p.neutral))
@@ -347,7 +351,7 @@ def _fit_from(
     parameters = [p for effect in effects for p in effect.parameters]
     low, high = np.array([p.bounds for p in parameters]).T
     inside = np.clip(start, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
-    for _ in range(5):  # until the distrust of readings agrees with what the fit leaves
+    for _ in range(5):  # until distrust of readings and times of steps agree with what is left
         answer = least_squares(
             lambda v: problem.misfit(settings_at(effects, v))[mask],
             inside,
@@ -360,9 +364,13 @@ def _fit_from(
             ftol=tolerance,
             max_nfev=turns,
         )
-        if not problem.predict.trust_anew(settings_at(effects, answer.x), problem.noise):
+        settings = settings_at(effects, answer.x)
+        inside = answer.x.copy()
+        for k, best in _step_times(problem, settings, mask).items():
+            inside[k] = best.time_s
+        is_judged_anew = problem.predict.trust_anew(settings, problem.noise)
+        if not is_judged_anew and np.array_equal(inside, answer.x):
             break
-        inside = answer.x
     loss, count = 2.0 * float(answer.cost), problem.free_readings(mask)
     variance = max(1.0, loss / max(count - len(start), 1))
     # Slopes are scaled by Huber's weights, so that outliers add no certainty.
@@ -371,12 +379,36 @@ def _fit_from(
     residual = np.full(mask.shape, np.nan)
     limit = HUBER * np.sqrt(variance)
     residual[mask] = np.clip(answer.fun, -limit, limit)
-    settings = settings_at(effects, answer.x)
     if thorough:  # at the edge of what cables hold, a reading is not as sure as the sensor is
         doubt = steepness(problem, settings)
         slopes, residual = slopes / doubt[..., None], residual / doubt
     std, inflation, wald, covariance = _doubts(settings, slopes, residual, variance)
+    for k, best in _step_times(problem, settings, mask, variance).items():
+        std[k], covariance[k] = best.std_s, 0.0
+        covariance[:, k] = 0.0
+        covariance[k, k] = best.std_s**2
     return Fit(settings, answer.x, std, loss, count, inflation, wald, covariance)
+
+
+def _step_times(
+    problem: Problem, settings: Sequence[Setting], mask: BoolArray, variance: float = 1.0
+) -> dict[int, StepTime]:
+    """Return where in the vector each time of a step stands, and its best value in these rows."""
+    answer = {}
+    for setting, columns in with_places(settings):
+        for k, p in enumerate(setting.effect.parameters, start=columns.start):
+            if not p.is_step_time:
+                continue
+            losses = []
+            for value in p.bounds:  # with the step in all rows, then in none
+                there = replace(setting, values={**setting.values, p.name: value})
+                misfit = problem.misfit(tuple(there if s is setting else s for s in settings))
+                losses.append(huber(np.where(mask, misfit, np.nan)).sum(axis=1))
+            assert problem.measured.time_s is not None
+            best = step_time(problem.measured.time_s, losses[1], losses[0], variance)
+            if best is not None:
+                answer[k] = best
+    return answer
 
 
 def _doubts(

@@ -95,6 +95,8 @@ class Parameter:
         Ids of effects with the same number: beside those, it is left out.
     is_shape : bool
         Whether it only says how the effect acts, such as a phase, and alone does nothing.
+    is_step_time : bool
+        Whether it is the time from which on the effect acts at once, so that it has no slope.
     """
 
     name: str
@@ -107,6 +109,7 @@ class Parameter:
     can_have: Callable[[Machine], bool] = any_machine
     part_of: tuple[str, ...] = ()
     is_shape: bool = False
+    is_step_time: bool = False
 
     @property
     def label(self) -> str:

@@ -63,6 +63,11 @@ def _offset(machine: Machine) -> Size:
     return Size(0.02 * mass, bounds=(-0.95 * mass, 20 * mass), plausible=(-mass, mass))
 
 
+_TIMES = 6
+"""Of the best of all times a gain is that many times as probable by chance as of one number more,
+by the quantiles of Andrews, Econometrica 61 (1993) 821, table I."""
+_TIME = Size(1.0, bounds=(-1e9, 1e9), plausible=(-1e9, 1e9))
+
 EFFECT = Effect(
     id="load_step",
     summary="the load on the platform changes at a time",
@@ -70,9 +75,10 @@ EFFECT = Effect(
     source="definition",
     parameters=(
         Parameter("offset_kg", MASS, _offset),
-        Parameter("time_s", TIME, Size(1.0, bounds=(-1e9, 1e9), plausible=(-1e9, 1e9))),
+        Parameter("time_s", TIME, _TIME, is_shape=True, is_step_time=True),
     ),
     on_machine=_change,
     needs=frozenset({"time"}),
     starts_from=_starts,
+    looks=_TIMES,
 )
