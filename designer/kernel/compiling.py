@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import llvmlite.binding
 import numba
 from filelock import FileLock
-from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserWideCacheLocator
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
 from platformdirs import user_cache_path
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -58,7 +58,7 @@ def _kept(function: Function) -> Function:
     return function
 
 
-class _Locator(UserWideCacheLocator):  # type: ignore[misc]
+class _Locator(_CacheLocator):  # type: ignore[misc]
     """Finds machine code by what the sources say, not by where they lie.
 
     Numba takes cached code for fresh as long as the function's own file is unchanged, although it
@@ -72,8 +72,23 @@ class _Locator(UserWideCacheLocator):  # type: ignore[misc]
         kept = numba.config.CACHE_DIR or user_cache_path("cdpr-designer", appauthor=False)
         self._cache_path = str(Path(kept) / _compiler_and_sources() / Path(py_file).parent.name)
 
+    @classmethod
+    def from_function(cls, py_func: Any, py_file: str) -> _Locator | None:
+        locator = cls(py_func, py_file)
+        try:
+            locator.ensure_cache_path()
+        except OSError:
+            return None
+        return locator
+
+    def get_cache_path(self) -> str:
+        return self._cache_path
+
     def get_source_stamp(self) -> str:
         return sha256(Path(self._py_file).read_bytes()).hexdigest()
+
+    def get_disambiguator(self) -> str:
+        return str(self._lineno)
 
 
 class _Implementation(CompileResultCacheImpl):  # type: ignore[misc]
