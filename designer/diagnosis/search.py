@@ -45,7 +45,7 @@ class EffectTrial:
         The model with it.
     gain : float
         What it takes off the robust loss over the rows for fitting, in units of the variance left,
-        and for as many independent readings as there are.
+        and for as many independent readings as there are; beside a step, where one hides it.
     chance : float
         Probability of such a gain by chance in any of the candidates of this round.
     heldout_gain : float
@@ -188,7 +188,9 @@ class Searcher:
             visited.append(set(effects))
             # What earned its place before may hide behind what was named instead.
             earned = [t.effect for step in steps for t in step.trials if t.earns_its_place]
-            trials, passed_over = self.trials(effects, present, f"round {len(steps) + 1}", earned)
+            part = f"round {len(steps) + 1}"
+            trials, passed_over = self.trials(effects, present, part, earned)
+            trials = self._beside_a_step(effects, trials, part)
             is_over = self.progress.is_over
             best = [] if is_over else _best(trials)
             # More that a machine lacks at once are not to be told apart by one log.
@@ -251,6 +253,43 @@ class Searcher:
                 trials = self._validated(effects, present, [*trials, *more], looks)
                 rest = without(rest, *(e.key for e in further))
         return trials, {e.key: promised[e] for e in rest}
+
+    def _beside_a_step(
+        self, effects: Sequence[Effect], trials: list[EffectTrial], part: str
+    ) -> list[EffectTrial]:
+        """Return the trials, the one that does best beside a step at a time counted beside that.
+
+        Where the best of them does not earn its place: what a step leaves lasts over rows, so that
+        nothing else is sure beside it, nor is the step beside what is constant. Both have to earn
+        their places, each beside the other.
+        """
+        variance = _best_variance(trials)
+        best = max(trials, key=lambda t: t.score(variance), default=None)
+        if best is None or best.may_be_added or self.progress.is_over:
+            return trials
+        others = self._others(effects)
+        pairs: dict[tuple[EffectTrial, Effect], float] = {}
+        for step in (e for e in others if any(p.is_step_time for p in e.parameters)):
+            for trial in (t for t in trials if t.effect is not step):
+                self.progress(f"{part}: {trial.effect.key} beside {step.key}")
+                reach = self._in_reach([*effects, trial.effect], step, trial.fit)
+                pairs[trial, step] = reach.loss / variance + _penalty(trial.effect)
+        if not pairs:
+            return trials
+        trial, step = min(pairs, key=pairs.__getitem__)
+        model = self.fit([*effects, trial.effect, step], trial.fit, anew=True)
+        looks = len(others) * len(pairs)
+        alone = self.fit([*effects, step], model)
+        beside = []
+        for rest, present, effect in ((trial.effect, trial.fit, step), (step, alone, trial.effect)):
+            gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
+            chance = _chance(gain, effect, looks)
+            both = EffectTrial(effect, model, gain, chance, heldout_gain=float("nan"))
+            beside += self._validated([*effects, rest], present, [both], looks)
+        if not all(t.may_be_added for t in beside):
+            return trials
+        told = replace(beside[1], fit=trial.fit)
+        return [told if t is trial else t for t in trials]
 
     def _promised(self, effects: Sequence[Effect], present: Fit, part: str) -> dict[Effect, float]:
         """Return the gain that one linear step promises of each other candidate, best first.

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 from twins.dataset import make, size_for
+from twins.effects import predict
 from twins.robots import YARD3
 
 from designer.diagnosis.case import case_of
@@ -22,7 +26,11 @@ from designer.model.measured_data import Noise
 def searcher(tmp_path) -> Searcher:
     effect = {"platform_mass": YARD3.draw("platform_mass", size_for(YARD3, "platform_mass", 10.0))}
     make(YARD3, effect, rows=60).write(tmp_path)
-    study = read_study(tmp_path / "config.yaml")
+    return searcher_of(tmp_path)
+
+
+def searcher_of(folder: Path) -> Searcher:
+    study = read_study(folder / "config.yaml")
     assert study.measurements is not None
     case = case_of(study, study.measurements, read_measured(study))
     predict = Predictor(case.machine, case.measured)
@@ -34,6 +42,26 @@ def test_it_finds_and_ends(searcher) -> None:
     steps, _, found = searcher.run()
     assert [effect.id for effect in found] == ["platform_mass"]
     assert [step.added.id if step.added else None for step in steps] == ["platform_mass", None]
+
+
+def test_a_constant_and_a_step_are_found_beside_each_other(tmp_path, monkeypatch) -> None:
+    size_kg = size_for(YARD3, "platform_mass", 10.0)
+    heavy = make(YARD3, {"platform_mass": {"offset_kg": size_kg}}, rows=60)
+    heavier = {"platform_mass": {"offset_kg": 2.0 * size_kg}}
+    late = (np.arange(60) >= 25)[:, None]
+    length_m, tension_N = predict(YARD3, heavier, heavy.scene)
+    replace(
+        heavy,
+        length_m=heavy.length_m + late * (length_m - heavy.clean_length_m),
+        tension_N=heavy.tension_N + late * (tension_N - heavy.clean_tension_N),
+    ).write(tmp_path)
+    both = searcher_of(tmp_path)
+    found = {s.effect.id: s.values for s in both.run()[1].settings}
+    assert set(found) == {"platform_mass", "load_step"}
+    assert found["platform_mass"]["offset_kg"] == pytest.approx(size_kg, rel=0.1)
+    assert found["load_step"]["offset_kg"] == pytest.approx(size_kg, rel=0.1)
+    monkeypatch.setattr(both, "_beside_a_step", lambda effects, trials, part: trials)
+    assert {effect.id for effect in both.run()[2]} != set(found)
 
 
 def test_it_ends_where_pruning_undoes_what_was_added(searcher, monkeypatch) -> None:
