@@ -64,8 +64,9 @@ def _offset(machine: Machine) -> Size:
 
 
 _TIMES = 6
-"""Of the best of all times a gain is that many times as probable by chance as of one number more,
-by the quantiles of Andrews, Econometrica 61 (1993) 821, table I."""
+"""How much more probable by chance the gain at the best of all times is than that of two numbers.
+
+In white noise of 60 rows it is 4, of 200 rows 7, at one in 100, with five rows on each side."""
 _TIME = Size(1.0, bounds=(-1e9, 1e9), plausible=(-1e9, 1e9))
 
 EFFECT = Effect(
