@@ -126,7 +126,8 @@ def _summary_of_selection(
     assert request is not None
     yield label, f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
     losses = "no loss" if chosen.efficiency == 1.0 else f"{chosen.efficiency:.3g} left"
-    terms = f"at safety factor {request.safety_factor:g}, {losses} at end fittings and bends"
+    lost_at = "end fittings, bends and sheaves"
+    terms = f"at safety factor {request.safety_factor:g}, {losses} at {lost_at}"
     case = chosen.governing.case
     terms = terms if case is STATIC else f"in the load case '{escape(case.name)}'"
     yield "  utilisation", f"{chosen.verification.utilisation:.1%} {terms}"

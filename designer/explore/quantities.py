@@ -41,7 +41,7 @@ QUANTITIES = (
         100.0,
         "Largest tension anywhere in any cable over the allowable tension of the chosen rope; "
         "above 100 % it is too weak there. The allowable tension is the minimum breaking load, "
-        "times what end fittings and bending leave of it, over the safety factor.",
+        "times what end fittings, bending and sheaves leave of it, over the safety factor.",
     ),
     Quantity(
         "diameter",

@@ -40,7 +40,7 @@ class Candidate:
     cable : Cable
         Its figures as the solver takes them, efficiency and safety factor applied.
     efficiency : float
-        Share of the breaking load that end fittings and bending leave.
+        Share of the breaking load that end fittings, bending and sheaves leave.
     verification : Verification
         What it meets in the load case that governs.
     cases : tuple of CaseResult
