@@ -26,7 +26,7 @@ _MOST_SAMPLES, _FEW_SAMPLES = 512, 32
 
 def _named_loads(loaded: Loaded) -> dict[str, Any]:
     directions = {"wind_direction": loaded.wind, "inertia_direction": loaded.inertia}
-    return {"load_case": loaded.case.name, **directions}
+    return {"load_case": loaded.case.name, **directions, "wrench_N": loaded.wrench_N}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,10 +54,11 @@ class Adrift:
 def adrift_in(
     robot: Robot, workspace: Workspace, cases: Sequence[LoadCase], cable: Cable
 ) -> Iterator[Adrift]:
-    """Yield the load cases with wind or inertia that carry the platform away somewhere."""
+    """Yield the load cases whose wind, inertia or wrenches carry the platform away somewhere."""
     samples = _FEW_SAMPLES if robot.is_redundant else _MOST_SAMPLES
     for case in cases:
-        if case.wind is None and case.acceleration_m_per_s2 == 0.0:
+        is_still = case.wind is None and case.acceleration_m_per_s2 == 0.0
+        if is_still and case.wrench_set is None:
             continue
         space = workspace.of_case(case)
         places = np.concatenate([space.space.landmarks(), space.thinned(samples)])

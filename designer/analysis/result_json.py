@@ -266,6 +266,7 @@ def _case(case: CaseResult) -> Json:
         "temperature_change_K": case.case.temperature_change_K,
         "wind_direction": loaded.wind,
         "inertia_direction": loaded.inertia,
+        "wrench_N": loaded.wrench_N,
         "refined": verification.is_refined,
     }
     return figures | after

@@ -286,8 +286,11 @@ def payload_scaled(loaded: Loaded, factor: float) -> Loaded:
         case = replace(case, inertia_kg_m2=None)
         scaled = replace(scaled, inertia_kg_m2=factor * inertia)
     robot = replace(robot, platform=scaled)
-    case = replace(case, mass_kg=None, wrench_N=factor * wrench)
-    return replace(loaded, case=case, bare=(robot, cable))
+    if case.wrench_set is None or loaded.wrench_N is None:
+        case = replace(case, mass_kg=None, wrench_N=factor * wrench)
+        return replace(loaded, case=case, bare=(robot, cable))
+    case = replace(case, mass_kg=None, wrench_set=case.wrench_set.scaled(factor))
+    return replace(loaded, case=case, bare=(robot, cable), wrench_N=factor * loaded.wrench_N)
 
 
 def with_density(loaded: Loaded, factor: float) -> Loaded:

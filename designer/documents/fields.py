@@ -254,6 +254,14 @@ def _rising(ends: tuple[float, float], unit: str = "m") -> tuple[float, float]:
     return ends
 
 
+def _not_falling(ends: tuple[float, float], unit: str) -> tuple[float, float]:
+    lower, upper = ends
+    if lower > upper:
+        problem = f"the lower end {lower:g} {unit} is above the upper {upper:g} {unit}"
+        raise refusal(problem, "[lowest, highest]")
+    return ends
+
+
 def _not_zero(direction: tuple[float, float, float]) -> tuple[float, float, float]:
     # Squares of smaller parts come near the least that a float can be.
     if max(map(abs, direction)) < _LEAST_OF_A_DIRECTION:
@@ -398,6 +406,25 @@ Forces = Annotated[tuple[ForcePart, ForcePart, ForcePart], list_of(3, 3, "three 
 Moments = Annotated[
     tuple[MomentPart, MomentPart, MomentPart],
     list_of(3, 3, "three moments [x, y, z]"),
+]
+_UNTIL = "[lowest, highest]"
+ForceRange = Annotated[
+    tuple[ForcePart, ForcePart],
+    list_of(2, 2, _UNTIL),
+    AfterValidator(partial(_not_falling, unit="N")),
+]
+MomentRange = Annotated[
+    tuple[MomentPart, MomentPart],
+    list_of(2, 2, _UNTIL),
+    AfterValidator(partial(_not_falling, unit="N*m")),
+]
+ForceRanges = Annotated[
+    tuple[ForceRange, ForceRange, ForceRange],
+    list_of(3, 3, "three ranges of forces [[lowest, highest], …, …]"),
+]
+MomentRanges = Annotated[
+    tuple[MomentRange, MomentRange, MomentRange],
+    list_of(3, 3, "three ranges of moments [[lowest, highest], …, …]"),
 ]
 Direction = Annotated[
     tuple[Share, Share, Share],

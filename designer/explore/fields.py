@@ -36,6 +36,8 @@ _OF_A_BODY = (
     "robot.platform.wrench.moment",
     "robot.platform.inertia",
     "load_cases.inertia",
+    "load_cases.wrench.moment",
+    "load_cases.wrench_set.moment",
     "pose.rotation_vector",
 )
 _ROUND = 3

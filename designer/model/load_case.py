@@ -16,10 +16,10 @@ platform as forces in the world.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.region import Region
 from designer.model.robot import Platform, Robot
 from designer.model.space import Orientations
+from designer.model.wrench_set import WrenchSet
 
 AIR_DENSITY_KG_PER_M3 = 1.25
 _SAME_DIRECTION = 1e-12
@@ -36,6 +37,8 @@ _SAME_DIRECTION = 1e-12
 FIRST_WINDS = 8
 EACH = "each"
 """Of a lost cable: each in turn."""
+MOST_DIRECTIONS = 512
+"""Of a load case with a set of wrenches: each is solved in all samples, for all ropes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,6 +116,8 @@ class Loaded:
         Unit vectors of where the wind blows to and the inertia force points, world frame.
     lost_cable : int or None
         The cable that is gone, from 1; the robot above still has it.
+    wrench_N : array (6,) or None
+        That of the case's set of wrenches, without the dynamic factor [N, N·m].
     """
 
     case: LoadCase
@@ -122,21 +127,25 @@ class Loaded:
     wind: FloatArray | None = None
     inertia: FloatArray | None = None
     lost_cable: int | None = None
+    wrench_N: FloatArray | None = None
 
     @property
     def is_turned(self) -> bool:
-        """Whether its wind or inertia force comes from the worst direction, to be searched."""
+        """Whether its wind, inertia force or wrench is the worst of many, to be searched."""
         return next(self.turned(1.0), None) is not None
 
     def turned(self, step: float) -> Iterator[Loaded]:
-        """Yield the same with the wind, or the inertia force, turned a little: by a step aside."""
-        robot, lost = self.bare[0], self.lost_cable
+        """Yield the same with wind, inertia force or wrench changed a little: by a step aside."""
+        robot, rest = self.bare[0], (self.lost_cable, self.wrench_N)
         if self.wind is not None and self.case.searches_wind(robot):
             for along in _aside(self.wind, robot.level[:2], step):
-                yield self.case.under(*self.bare, along, self.inertia, lost)
+                yield self.case.under(*self.bare, along, self.inertia, *rest)
         if self.inertia is not None:
             for along in _aside(self.inertia, free_axes(robot), step):
-                yield self.case.under(*self.bare, self.wind, along, lost)
+                yield self.case.under(*self.bare, self.wind, along, *rest)
+        if self.wrench_N is not None and self.case.wrench_set is not None:
+            for wrench_N in self.case.wrench_set.beside(self.wrench_N, step):
+                yield self.case.under(*self.bare, self.wind, self.inertia, rest[0], wrench_N)
 
     @property
     def growth(self) -> float:
@@ -170,13 +179,18 @@ class Loaded:
 
     def on(self, robot: Robot, cable: Cable) -> Loaded:
         """Return the same case in the same directions on another robot or cable."""
-        return self.case.under(robot, cable, self.wind, self.inertia, self.lost_cable)
+        directions = self.wind, self.inertia, self.lost_cable, self.wrench_N
+        return self.case.under(robot, cable, *directions)
 
     @property
     def words(self) -> str:
-        """Its direction or lost cable, for the reader of a report; empty where there is neither."""
+        """Its directions, wrench and lost cable, for the reader of a report; empty without any."""
         named = (("wind", self.wind), ("inertia force", self.inertia))
         parts = [f"{name} along {_row(along)}" for name, along in named if along is not None]
+        if self.wrench_N is not None:
+            parts.append(f"force {_row(self.wrench_N[:3])} N")
+            if self.wrench_N[3:].any():
+                parts.append(f"moment {_row(self.wrench_N[3:])} N·m")
         if self.lost_cable is not None:
             parts.append(f"without cable {self.lost_cable}")
         return ", ".join(parts)
@@ -200,6 +214,8 @@ class LoadCase:
         As `Platform.inertia_kg_m2`, of the platform with its payload [kg·m²].
     wrench_N : array (6,) or None
         Constant force and moment on the platform, as `Platform.wrench_N` [N, N·m].
+    wrench_set : WrenchSet or None
+        Instead of that: wrenches of which any one may act.
     dynamic_factor : float
         Factor on weight and wrench of the platform, not on the cables' own weight.
     acceleration_m_per_s2 : float
@@ -236,6 +252,7 @@ class LoadCase:
     region: Region | None = None
     orientations: Orientations | None = None
     inertia_kg_m2: Annotated[FloatArray, checked.Shape((3, 3))] | None = None
+    wrench_set: WrenchSet | None = None
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
@@ -244,6 +261,8 @@ class LoadCase:
             raise ValueError(f"cable_lost must be a cable or '{EACH}', not '{lost}'")
         if isinstance(lost, int):
             checked.Number(least=1).require("cable_lost", lost)
+        if self.wrench_set is not None and self.wrench_N is not None:
+            raise ValueError("wrench_N and wrench_set exclude each other")
 
     @property
     def changes_robot(self) -> bool:
@@ -256,19 +275,28 @@ class LoadCase:
         return is_any and not robot.is_planar
 
     def on(self, robot: Robot, cable: Cable) -> Iterator[Loaded]:
-        """Yield robot and cable in all directions of this case: of wind, of inertia, lost cables.
+        """Yield robot and cable in all directions of this case: of wind, inertia, loss, wrench.
 
         The inertia force points along 14 directions in space, 8 in a plane: any other direction is
         within 37° of one of them. What is worst between them is for a search to find, by `under`.
         """
+        for directions in product(*self._directions(robot)):
+            yield self.under(robot, cable, *directions)
+
+    def direction_count(self, robot: Robot) -> int:
+        """Return how many directions `on` yields."""
+        return math.prod(map(len, self._directions(robot)))
+
+    def _directions(self, robot: Robot) -> tuple[Sequence[Any], ...]:
+        """Return the directions of wind and inertia, the lost cables and the wrenches (6,)."""
         winds = [None] if self.wind is None else list(self.wind.directions(robot))
         pushes = [None] if self.acceleration_m_per_s2 == 0.0 else list(_spread(robot))
         lost: list[int | None] = [None]
         if self.cable_lost is not None:
             any_cable = self.cable_lost == EACH
             lost = list(range(1, robot.n_cables + 1)) if any_cable else [int(self.cable_lost)]
-        for wind, push, gone in product(winds, pushes, lost):
-            yield self.under(robot, cable, wind, push, gone)
+        wrenches = [None] if self.wrench_set is None else list(self.wrench_set.wrenches_N)
+        return winds, pushes, lost, wrenches
 
     def mass_on(self, body: Platform) -> float:
         """Return the mass of a platform in this case, with what it weighs beyond its drawing."""
@@ -281,11 +309,16 @@ class LoadCase:
         wind: FloatArray | None = None,
         inertia: FloatArray | None = None,
         lost_cable: int | None = None,
+        wrench_N: FloatArray | None = None,
     ) -> Loaded:
-        """Return robot and cable in one direction of wind and inertia force (3,), unit vectors."""
+        """Return robot and cable in one direction of wind and inertia force (3,), unit vectors.
+
+        And under one wrench (6,) of the set of the case [N, N·m].
+        """
         bare, body, factor = (robot, cable), robot.platform, self.dynamic_factor
         mass = self.mass_on(body)
-        wrench = factor * (body.wrench_N if self.wrench_N is None else self.wrench_N)
+        given = self.wrench_N if wrench_N is None else wrench_N
+        wrench = factor * (body.wrench_N if given is None else given)
         centre = body.centre_force_N
         if inertia is not None:
             centre = centre + mass * self.acceleration_m_per_s2 * inertia
@@ -315,7 +348,7 @@ class LoadCase:
             cable = replace(cable, linear_density_kg_per_m=density)
         if self.expansion_per_K is not None:
             cable = replace(cable, expansion_per_K=self.expansion_per_K)
-        return Loaded(self, bare, loaded, cable, wind, inertia, lost_cable)
+        return Loaded(self, bare, loaded, cable, wind, inertia, lost_cable, wrench_N)
 
 
 STATIC = LoadCase("static")

@@ -1,11 +1,11 @@
 """What candidates meet in the load cases of a study, over the samples and between them.
 
-Each case has directions of wind and inertia and lost cables (`designer.model.load_case.Loaded`);
-each of these is solved over all samples, for all candidates that hold so far; of robots that are
-slow to solve over some of them at first, and over all where a candidate is searched. A lost cable,
-or warmth on braked winches, sets the platform moving, which takes long to follow: that is done for
-fewer samples. Between the
-samples it is searched in the direction in which a case asks for most, and in those near it.
+Each case has directions of wind and inertia, lost cables and wrenches
+(`designer.model.load_case.Loaded`); each of these is solved over all samples, for all candidates
+that hold so far; of robots that are slow to solve over some of them at first, and over all where a
+candidate is searched. A lost cable, or warmth on braked winches, sets the platform moving, which
+takes long to follow: that is done for fewer samples. Between the samples it is searched in the
+direction in which a case asks for most, and in those near it.
 """
 
 from __future__ import annotations
@@ -353,7 +353,8 @@ def _load_of(loaded: Loaded) -> Hashable:
     """Return what is the same for cables that meet the same load on the same robot."""
     if loaded.case.changes_robot:
         return loaded
-    directions = (None if d is None else d.tobytes() for d in (loaded.wind, loaded.inertia))
+    each = (loaded.wind, loaded.inertia, loaded.wrench_N)
+    directions = (None if d is None else d.tobytes() for d in each)
     return loaded.case, *directions
 
 

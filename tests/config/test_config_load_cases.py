@@ -130,6 +130,38 @@ def test_given_directions_of_wind_are_kept(windy: str, study_of: StudyOf) -> Non
             "load_cases[1].region",
             "nothing is left",
         ),
+        ("{name: a, wrench_set: []}", "load_cases[1].wrench_set", "the list has 0 values"),
+        (
+            "{name: a, wrench_set: {force: [[0, 2 kN], [0, 0], [1 N, 0]]}}",
+            "load_cases[1].wrench_set.force[2]",
+            "the lower end 1 N is above the upper 0 N",
+        ),
+        (
+            "{name: a, wrench_set: {force: [[0, 1], 2, [0, 1]]}}",
+            "load_cases[1].wrench_set.force[1]",
+            "2 is not a list",
+        ),
+        (
+            "{name: a, wrench_set: [{force: [0, 0, 1]}], wrench: {force: [0, 0, 1]}}",
+            "load_cases[1]",
+            "the load case has wrench and wrench_set",
+        ),
+        (
+            "{name: a, wrench_set: {moment: [[0, 1], [0, 0], [0, 0]]}}",
+            "load_cases[1].wrench_set",
+            "a moment has no meaning for a point mass",
+        ),
+        (
+            "{name: a, wrench: {moment: [1, 0, 0]}}",
+            "load_cases[1].wrench",
+            "a moment has no meaning for a point mass",
+        ),
+        (
+            "{name: a, acceleration: 1, wind: {speed: 1}, "
+            "wrench_set: {force: [[0, 1], [0, 1], [0, 1]]}}",
+            "load_cases[1].wrench_set",
+            "8 wrenches in 112 directions of wind, inertia and loss",
+        ),
     ],
 )
 def test_mistakes(windy: str, faults_of: FaultsOf, case: str, field: str, problem: str) -> None:
@@ -142,8 +174,8 @@ def test_mistakes(windy: str, faults_of: FaultsOf, case: str, field: str, proble
 LINES = {
     "{name: a, winds: 3}": (
         "load_cases[1].winds: unknown field 'winds' (expected one of name, mass, inertia, "
-        "wrench, dynamic_factor, acceleration, wind, ice, cable_lost, temperature_change, "
-        "safety_factor, termination_efficiency, region; did you mean 'wind'?)"
+        "wrench, wrench_set, dynamic_factor, acceleration, wind, ice, cable_lost, "
+        "temperature_change, safety_factor, termination_efficiency, region; did you mean 'wind'?)"
     ),
     "{name: a, cable_lost: 4}": (
         "load_cases[1].cable_lost: there is no cable 4, the robot has 3 (expected 1 to 3 or each)"

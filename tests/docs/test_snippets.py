@@ -42,6 +42,7 @@ _SELDOM = {
         "rotation_vector",
         "wind_direction",
         "inertia_direction",
+        "wrench_N",
         "force_N",
     ),
 }

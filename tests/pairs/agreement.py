@@ -55,18 +55,21 @@ class Situation:
     wind: np.ndarray | None = None
     inertia: np.ndarray | None = None
     lost: int | None = None
+    wrench: np.ndarray | None = None
 
     @classmethod
     def of(cls, text: Mapping[str, Any], ropes: list, found: CaseResult) -> Situation:
         named = {case["name"]: case for case in text.get("load_cases", ())}
         one = found.loaded
-        return cls(
-            text, ropes, named.get(found.case.name, {}), one.wind, one.inertia, one.lost_cable
-        )
+        case = named.get(found.case.name, {})
+        return cls(text, ropes, case, one.wind, one.inertia, one.lost_cable, one.wrench_N)
 
     @property
     def problem(self) -> Problem:
-        return problem_of(self.text, self.ropes, self.case, self.wind, self.inertia)
+        case = self.case
+        if self.wrench is not None:
+            case = {**case, "wrench": {"force": self.wrench[:3], "moment": self.wrench[3:]}}
+        return problem_of(self.text, self.ropes, case, self.wind, self.inertia)
 
     def problem_at(self, pose: Pose) -> Problem:
         """Return the problem with the inertia that it has in a pose."""
@@ -81,7 +84,7 @@ class Situation:
         return self.lost is not None or self.growth != 0.0
 
     def turned(self, rng: np.random.Generator) -> Situation:
-        """Return the case in directions at random, where it has any."""
+        """Return the case in directions, and under a wrench, at random where it has any."""
         up, wind, inertia = up_of(self.text), self.wind, self.inertia
         if wind is not None and "direction" not in self.case["wind"]:
             wind = level_directions(self.text, up, 2, rng)[rng.integers(2)]
@@ -90,7 +93,18 @@ class Situation:
             free = free[np.abs(free).max(axis=1) > 0.0]
             inertia = rng.normal(size=len(free)) @ free
             inertia = inertia / np.linalg.norm(inertia)
-        return replace(self, wind=wind, inertia=inertia)
+        wrench = self.wrench
+        if wrench is not None and isinstance(self.case["wrench_set"], list):
+            wrench = _six(self.case["wrench_set"][rng.integers(len(self.case["wrench_set"]))], 3)
+        elif wrench is not None:
+            low, high = _six(self.case["wrench_set"], (3, 2)).T
+            wrench = low + rng.uniform(size=6) * (high - low)
+        return replace(self, wind=wind, inertia=inertia, wrench=wrench)
+
+
+def _six(given: Mapping[str, Any], shape: Any) -> np.ndarray:
+    """Return force and moment in a row, or their ranges one below the other."""
+    return np.concatenate([given.get(name, np.zeros(shape)) for name in ("force", "moment")])
 
 
 def ropes_of(analysis: Analysis) -> list[tuple[Any, Any]]:
@@ -212,7 +226,8 @@ def _no_worse(
         if one.keeps_lengths:
             used, _ = tension_at(there, pose)
         if used > most * (1.0 + SAME):
-            yield f"{name}: {used:.9g} at {pose} {there.wind} {there.inertia}, told {most:.9g}"
+            along = f"{there.wind} {there.inertia} {there.wrench}"
+            yield f"{name}: {used:.9g} at {pose} {along}, told {most:.9g}"
 
 
 def state_at(there: Situation, loaded: Loaded, place: np.ndarray) -> State | None:
@@ -235,7 +250,9 @@ def _requirement(text, ropes, analysis: Analysis, one: Requirement) -> Iterator[
     loaded = one.loaded
     cases = {case["name"]: case for case in text.get("load_cases", ())}
     case = cases.get(one.load_case, {})
-    there = Situation(text, ropes, case, loaded.wind, loaded.inertia, loaded.lost_cable)
+    there = Situation(
+        text, ropes, case, loaded.wind, loaded.inertia, loaded.lost_cable, loaded.wrench_N
+    )
     quantity = QUANTITIES[one.id]
     name = f"{one.load_case} {one.direction} {one.id}"
     facing = text["workspace"].get("orientation")

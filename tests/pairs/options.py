@@ -265,6 +265,15 @@ def _wrench(force: list[float]) -> Callable[[Text], Text]:
                                     force[2]]}  # fmt: skip
 
 
+def _wrench_box(study: Text) -> Text:
+    across = [0.0, 0.0] if study["robot"].get("planar") else [-70.0, 40.0]
+    return {"force": [[-60.0, 80.0], across, [-300.0, 100.0]]}
+
+
+def _wrench_list(study: Text) -> list[Text]:
+    return [_wrench(force)(study) for force in ([70, -40, -50], [-60, 50, -200], [0, 0, 120])]
+
+
 def _at(path: str, value_of: Callable[[Text], Any]) -> Callable[[Text], None]:
     return lambda study: _set(path, value_of(study))(study)
 
@@ -308,6 +317,8 @@ OPTIONS: tuple[Option, ...] = (
     Option(
         "case_wrench", "force of a load case", ALL, _at("case.wrench", _wrench([-50, 80, -100]))
     ),
+    Option("wrench_box", "box of forces", ALL, _at("case.wrench_set", _wrench_box)),
+    Option("wrench_list", "list of forces", ALL, _at("case.wrench_set", _wrench_list)),
     Option("dynamic_factor", "dynamic factor", ALL, _set("case.dynamic_factor", 1.3)),
     Option("acceleration", "acceleration", ALL, _set("case.acceleration", 0.6)),
     Option(

@@ -43,6 +43,8 @@ QUICK = (
     ("pulleys", "winch_tension"),
     ("platform_frequency", "duty_class"),
     ("ice", "attached_each"),
+    ("wrench_box", "dynamic_factor"),
+    ("wrench_list", "platform_mass"),
 )
 """Pairs on the robot of three cables, which is quick, of as many options as there are."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import product
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import Discriminator, Field, StrictBool, Tag, model_validator
 
 from designer.arrays import FloatArray, frozen_array
@@ -20,6 +21,7 @@ from designer.model.region import Region
 from designer.model.robot import Platform, Robot
 from designer.model.space import Orientations
 from designer.model.winches import Winches
+from designer.model.wrench_set import MOST_WRENCHES, WrenchSet
 
 _points = list_of(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
 
@@ -369,6 +371,49 @@ class CaseWrenchSection(WrenchSection):
     """Constant moment on the platform in this case, along the axes of the world frame."""
 
 
+class ListedWrenchSection(WrenchSection):
+    """One of several constant loads of a load case."""
+
+    force: fields.Forces = config_field("Force of a set", (0.0, 0.0, 0.0))
+    """Force on the platform, along the axes of the world frame."""
+    moment: fields.Moments = config_field("Moment of a set", (0.0, 0.0, 0.0))
+    """Moment on the platform, along the axes of the world frame."""
+
+
+_NO_RANGES = ((0.0, 0.0), (0.0, 0.0), (0.0, 0.0))
+
+
+class WrenchBoxSection(Section):
+    """All wrenches whose forces and moments lie between two ends, each for itself."""
+
+    force: fields.ForceRanges = config_field("Range of forces", _NO_RANGES)
+    """From where to where the force reaches along each axis of the world frame."""
+    moment: fields.MomentRanges = config_field("Range of moments", _NO_RANGES)
+    """From where to where the moment reaches about each axis of the world frame."""
+
+
+ConfiguredWrenchSet = Annotated[
+    Annotated[WrenchBoxSection, Tag("a box")]
+    | Annotated[
+        tuple[ListedWrenchSection, ...],
+        list_of(1, MOST_WRENCHES, f"1 to {MOST_WRENCHES} wrenches {{force: …, moment: …}}"),
+        Tag("a list"),
+    ],
+    Discriminator(lambda given: "a list" if isinstance(given, list | tuple) else "a box"),
+]
+
+
+def wrench_set_of(
+    given: WrenchBoxSection | tuple[ListedWrenchSection, ...] | None,
+) -> WrenchSet | None:
+    """Return the wrenches of a load case."""
+    if given is None:
+        return None
+    if isinstance(given, WrenchBoxSection):
+        return WrenchSet.between(*frozen_array([*given.force, *given.moment]).T)
+    return WrenchSet(frozen_array([section.wrench_N for section in given]))
+
+
 class LoadCaseSection(Section):
     """One load case; what it leaves out is as in the rest of the study."""
 
@@ -381,6 +426,10 @@ class LoadCaseSection(Section):
     mass and gives none, natural frequencies are not computed in it."""
     wrench: CaseWrenchSection | None = None
     """Constant load on the platform in this case, instead of the robot's."""
+    wrench_set: ConfiguredWrenchSet | None = None
+    """Constant loads of which any one may act, instead of the robot's: a list, or a box
+    {force: [[lowest, highest], …, …], moment: …}. The corners of a box are held, and between them
+    is searched."""
     dynamic_factor: fields.DynamicFactor = config_field("Dynamic factor in load case", 1.0)
     """On the weight and the wrench of the platform, not on the cables' own weight."""
     acceleration: fields.Acceleration = config_field("Acceleration in load case", 0.0)
@@ -405,6 +454,19 @@ class LoadCaseSection(Section):
     region: AnyRegion | None = None
     """Where the platform is in this case, instead of the workspace's region."""
 
+    @property
+    def wrenches_N(self) -> FloatArray:
+        """Forces and moments (n, 6) that it names; of a box the corners [N, N·m]."""
+        several = wrench_set_of(self.wrench_set)
+        if several is not None:
+            return several.wrenches_N
+        return np.zeros((0, 6)) if self.wrench is None else self.wrench.wrench_N[None]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_kind_of_wrench(cls, value: object) -> object:
+        return only_one_of(value, ("wrench", "wrench_set"), "the load case")
+
     def load_case(
         self,
         cable: CableSection | GradeCableSection,
@@ -428,4 +490,5 @@ class LoadCaseSection(Section):
             termination_efficiency=self.termination_efficiency,
             region=region,
             orientations=orientations,
+            wrench_set=wrench_set_of(self.wrench_set),
         )

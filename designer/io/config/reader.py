@@ -22,6 +22,7 @@ from designer.io.config.places import Places, places_of
 from designer.io.config.regions import OrientationSection
 from designer.io.config.schema import SelectionSection, StudySection
 from designer.model.cable import Material
+from designer.model.load_case import MOST_DIRECTIONS, LoadCase
 from designer.model.machine import Surroundings
 from designer.model.region import Region
 from designer.model.robot import Robot
@@ -98,8 +99,8 @@ def study_of(
         workspace=places.workspace,
         selection=None if selection is None else selection.selection(),
         load_cases=tuple(
-            case.load_case(section.cable, *_case_places(document, index, robot, case, places))
-            for index, case in enumerate(section.load_cases)
+            _load_case(document, index, robot, section, places)
+            for index in range(len(section.load_cases))
         ),
         catalogues=tuple(folder / name for name in section.catalogues),
         measurements=None if measurements is None else measurements.measurements(folder),
@@ -169,6 +170,22 @@ def _with_family(
         "cable.safety_factor": f"{family.safety_factor:g}",
     }
     return tuple(replace(e, value_SI=meaning.get(e.field, e.value_SI)) for e in entries)
+
+
+def _load_case(
+    document: Document, index: int, robot: Robot, study: StudySection, places: Places
+) -> LoadCase:
+    """Return a load case; a fault where its loads are too many to solve all of them."""
+    section = study.load_cases[index]
+    case_places = _case_places(document, index, robot, section, places)
+    case = section.load_case(study.cable, *case_places)
+    count = case.direction_count(robot)
+    if case.wrench_set is None or count <= MOST_DIRECTIONS:
+        return case
+    of_set = len(case.wrench_set.wrenches_N)
+    problem = f"{of_set} wrenches in {count // of_set} directions of wind, inertia and loss"
+    expected = f"{MOST_DIRECTIONS} loads at most, not {count}"
+    raise InputError([document.fault(("load_cases", index, "wrench_set"), problem, expected)])
 
 
 def _case_places(

@@ -218,6 +218,11 @@ def point_mass_has_no_body(parts: Parts) -> Iterator[Fault]:
     for kind in ORIENTATION_KINDS:
         if parts.raw(f"workspace.{kind}") is not None:
             yield parts.fault(f"workspace.{kind}", meaningless, _NO_POINT_MASS)
+    for index, case in enumerate(parts.read("load_cases") or ()):
+        if case.wrenches_N[:, 3:].any():
+            kind = "wrench" if case.wrench_set is None else "wrench_set"
+            problem = f"a moment {meaningless}"
+            yield parts.fault("load_cases", problem, _NO_POINT_MASS, index, kind)
 
 
 def load_is_not_cancelled(parts: Parts) -> Iterator[Fault]:
@@ -327,9 +332,8 @@ def _vectors(parts: Parts, origin: FloatArray, size: float) -> Iterator[tuple[st
     if force is not None and force.any():
         yield "robot.platform.wrench.force", force[None] * size / np.linalg.norm(force)
     for case in parts.read("load_cases") or ():
-        force = np.zeros(3) if case.wrench is None else np.array(case.wrench.force)
         wind = np.zeros(3) if case.wind is None else np.array(case.wind.direction or np.zeros(3))
-        for along in (force, wind):
+        for along in (*case.wrenches_N[:, :3], wind):
             if along.any():
                 yield "load_cases", along[None] * size / np.linalg.norm(along)
 
@@ -351,9 +355,9 @@ def _turns(parts: Parts) -> Iterator[tuple[str, FloatArray]]:
     if moment is not None and moment.any():
         yield "robot.platform.wrench.moment", moment[None] / np.linalg.norm(moment)
     for case in parts.read("load_cases") or ():
-        if case.wrench is not None and any(case.wrench.moment):
-            moment = np.array(case.wrench.moment)
-            yield "load_cases", moment[None] / np.linalg.norm(moment)
+        for moment in case.wrenches_N[:, 3:]:
+            if moment.any():
+                yield "load_cases", moment[None] / np.linalg.norm(moment)
 
 
 def rank(points: FloatArray) -> int:
