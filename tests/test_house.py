@@ -18,7 +18,8 @@ ROOMS = [
     "__init__", "errors", "arrays", "checked", "spelling", "units", "resources", "progress",
     "model", "physics", "kernel", "statics", "sizing", "plugins", "effects", "study", "documents",
     "grades", "measured", "workspace", "proof", "selection", "diagnosis", "analysis", "io",
-    "foreign", "reference", "sweep", "optimum", "report", "api", "explore", "cli", "__main__",
+    "foreign", "reference", "sweep", "optimum", "report", "export", "api", "explore", "cli",
+    "__main__",
 ]  # fmt: skip
 """From the bottom up."""
 

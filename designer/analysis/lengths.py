@@ -70,21 +70,30 @@ class Lengths:
         return csv_text(rows)
 
 
+def design_cable_of(analysis: Analysis) -> DesignCable | None:
+    """Return the cables of the design; None if there are none.
+
+    The ropes of the answer, else the thinnest of the configured family that holds the workspace
+    or, where there is none, the configured pose.
+    """
+    if analysis.qualities is not None:
+        return analysis.qualities.cable
+    if analysis.workspace is not None or analysis.pose is None or not analysis.is_positive:
+        return None
+    diameter_m = float(analysis.pose.sizing.diameter_m)
+    name = f"{1e3 * diameter_m:.4g} mm of the configured family"
+    return DesignCable(analysis.pose.material.cable(diameter_m), name)
+
+
 def lengths_of(analysis: Analysis, poses: Poses, *, in_motion: bool = False) -> Lengths | None:
     """Solve poses (n_poses,) with the cables of the design; None if there is no such cable.
 
     At rest unless they are instants of the path of the study, passed ``in_motion``.
 
-    The cables are the ropes of the answer, else the thinnest of the configured family that holds
-    the workspace or, where there is none, the configured pose.
+    The cables are those of `design_cable_of`.
     """
-    if analysis.qualities is not None:
-        cable = analysis.qualities.cable
-    elif analysis.workspace is None and analysis.pose is not None and analysis.is_positive:
-        diameter_m = float(analysis.pose.sizing.diameter_m)
-        name = f"{1e3 * diameter_m:.4g} mm of the configured family"
-        cable = DesignCable(analysis.pose.material.cable(diameter_m), name)
-    else:
+    cable = design_cable_of(analysis)
+    if cable is None:
         return None
     workspace, robot = analysis.study.workspace, analysis.built.robot
     robot = robot if in_motion else robot.at_rest

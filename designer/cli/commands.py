@@ -21,6 +21,7 @@ from typer.core import TyperGroup
 from designer import __version__
 from designer.cli.catalog import catalog
 from designer.cli.compare import compare
+from designer.cli.export import export
 from designer.cli.import_robot import import_robot
 from designer.cli.lengths import lengths
 from designer.cli.optimise import optimise
@@ -95,6 +96,7 @@ app.command()(compare)
 app.command()(sweep)
 app.command()(optimise)
 app.command("import")(import_robot)
+app.command()(export)
 app.command()(verify)
 app.command()(schema)
 

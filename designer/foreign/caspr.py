@@ -19,6 +19,9 @@ BODIES, CABLES = "bodies", "cables"
 ROOTS = {"bodies_system": BODIES, "links": BODIES, "cables": CABLES}
 """What a file holds, by its outermost element; older files of bodies have no outer one."""
 
+NO_LIMIT = "inf"
+"""As MATLAB reads it, in any case."""
+
 
 @dataclass(frozen=True, slots=True)
 class _Joint:
@@ -195,6 +198,9 @@ def _initial(element: Element, joint: _Joint, base: Point) -> tuple[Point | None
     angles = values[len(joint.axes) :] if joint.turns else ()
     if element.attributes["type"] == "SPATIAL_EULER_XYZ" and len(angles) == 3:
         return position, (angles[0], angles[1], angles[2])
+    if joint.normal is not None and len(angles) == 1:
+        x, y, z = (component * angles[0] for component in joint.normal)
+        return position, (x, y, z)
     return position, None if any(angles) else ORIGIN
 
 
@@ -254,7 +260,7 @@ def _tension_limits(cable_set: Element, remarks: Remarks) -> tuple[float, float 
     for cable in _cables(cable_set):
         for name, values in limits.items():
             element = cable.find("properties", name)
-            if element is not None:
+            if element is not None and element.text.strip().lower() != NO_LIMIT:
                 values.update(element.numbers(1))
     least, largest = limits["force_min"], {force for force in limits["force_max"] if force > 0.0}
     if len(least) > 1:

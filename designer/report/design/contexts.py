@@ -7,19 +7,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import zip_longest
 from typing import Any
 
 import numpy as np
 
 from designer.analysis.analyse import Analysis
+from designer.analysis.fabrication import FabricatedCable, fabricated_cables
 from designer.analysis.governing import GoverningPose
 from designer.analysis.reactions import Reaction
-from designer.analysis.winches import spooled_of
-from designer.grades.grade import Grade, Size
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
-from designer.model.drum import DEAD_TURNS, Drum
+from designer.model.drum import DEAD_TURNS
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.report import format as fmt
@@ -30,7 +28,6 @@ from designer.report.templates import Statement, plain_statement
 from designer.selection.candidate import Candidate
 from designer.selection.efficiency import Allowance
 from designer.selection.samples import FEW_SAMPLES
-from designer.selection.spooling import Spooled
 from designer.statics.cable_loss import Fate
 from designer.study import Entry, Study, rope_effects
 
@@ -194,55 +191,9 @@ def clearance(analysis: Analysis) -> Context | None:
     }
 
 
-@dataclass(frozen=True, slots=True)
-class FabricatedCable:
-    """One cable: what it is of, and its longest and shortest unstrained length [m]."""
-
-    number: int
-    grade: Grade
-    size: Size
-    longest_m: float
-    shortest_m: float
-    drum: Drum | None  # That of the study, and the rope on it
-    spooled: Spooled | None
-
-    @property
-    def turns(self) -> float:
-        """Turns of the study's drum, or the suggested one, from the shortest to the longest."""
-        if self.spooled is not None:
-            return self.spooled.turns
-        return self.stroke_m / self.grade.drum_turn_m(self.size)
-
-    @property
-    def stroke_m(self) -> float:
-        """How far the cable runs."""
-        return self.longest_m - self.shortest_m
-
-    @property
-    def suggested_drum_m(self) -> float:
-        """Diameter of drums and sheaves that the rope's table suggests; NaN without one."""
-        ratio = self.grade.sheave_ratio
-        return math.nan if ratio is None else ratio.suggested * self.size.diameter_m
-
-    @property
-    def least_drum_m(self) -> float:
-        """The least diameter that the rope's table allows; NaN without one."""
-        ratio = self.grade.sheave_ratio
-        return math.nan if ratio is None else ratio.minimum * self.size.diameter_m
-
-    @property
-    def order_m(self) -> float:
-        """The longest length with the dead turns, rounded up to a decimetre."""
-        turn_m, dead_turns = self.grade.drum_turn_m(self.size), DEAD_TURNS
-        if self.drum is not None:
-            turn_m, dead_turns = self.drum.turn_m(self.size.diameter_m), self.drum.dead_turns
-        dead_m = 0.0 if math.isnan(turn_m) else dead_turns * turn_m
-        return math.ceil(10.0 * (self.longest_m + dead_m)) / 10.0
-
-
 def fabrication(analysis: Analysis) -> Context | None:
     """Lengths of each cable, and what its rope asks of drums; None without a product."""
-    cables = list(_cables(analysis))
+    cables = fabricated_cables(analysis)
     if not cables:
         return None
     assert analysis.study.selection is not None
@@ -256,18 +207,6 @@ def fabrication(analysis: Analysis) -> Context | None:
         "drum": cables[0].drum,
         "dead_turns": DEAD_TURNS,
     }
-
-
-def _cables(analysis: Analysis) -> Iterator[FabricatedCable]:
-    if analysis.qualities is None or not analysis.assignment.is_found:
-        return
-    verification = analysis.assignment.verification
-    lengths = zip(verification.longest_m.tolist(), verification.shortest_m.tolist(), strict=True)
-    ropes = zip(analysis.assignment.by_cable, lengths, strict=True)
-    drum, on_drum = analysis.built.robot.winches.drum, spooled_of(analysis)
-    for k, (rope, ends_m) in enumerate(ropes):
-        spooled = on_drum[k] if on_drum else None
-        yield FabricatedCable(k + 1, rope.grade, rope.size, *ends_m, drum, spooled)
 
 
 def path(analysis: Analysis) -> Context | None:

@@ -1,0 +1,1 @@
+"""Studies for other programs: a format a file, over one description of the robot at its poses."""

@@ -1,0 +1,152 @@
+"""A model of CASPR, as `designer.foreign.caspr` reads it: one file of bodies, one of cables.
+
+After CASPR's loaders (github.com/darwinlau/CASPR): gravity acts along −z, a free platform turns
+about its own x, y and z, one in a plane about the plane's normal; attachments count from the joint.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from designer.arrays import FloatArray
+from designer.errors import one_line
+from designer.export.robot import Export, ExportedRobot, levelled, lost_by_all
+from designer.model.region import Region
+from designer.model.robot import Platform, Poses, Robot
+
+JOINTS: dict[tuple[bool, bool], tuple[str, list[int], int]] = {
+    (False, False): ("SPATIAL_EULER_XYZ", [0, 1, 2], 3),
+    (False, True): ("T_XYZ", [0, 1, 2], 0),
+    (True, False): ("PLANAR_XZ", [0, 2], 1),
+    (True, True): ("P_XZ", [0, 2], 0),
+}
+"""Type of joint, axes of its first coordinates, and number of angles; by planar and point mass."""
+INERTIA = (("Ixx", 0, 0), ("Iyy", 1, 1), ("Izz", 2, 2), ("Ixy", 0, 1), ("Ixz", 0, 2), ("Iyz", 1, 2))
+
+
+def to_caspr(exported: ExportedRobot, stem: str) -> Export:
+    """Return STEM_bodies.xml and STEM_cables.xml; nothing is solved for them."""
+    study, space = exported.study, exported.study.workspace
+    pose = study.pose
+    lost = ["mass, sag and stretch of cables, and which ropes they are", *lost_by_all(study)]
+    if pose is None:
+        assert space is not None
+        pose = Poses.at(space.region.bounds_m.mean(axis=0))
+        lost.append("a pose of the study; q_initial is the middle of the region, not turned")
+    robot, pose, turned = levelled(exported.robot, pose)
+    if turned:
+        lost.append(turned)
+    lost += _lost_of(robot.platform)
+    limits_m = None
+    if space is not None:
+        limits_m = None if turned or space.region.is_discrete else space.region.bounds_m
+        lost += _lost_of_region(space.region, limits_m)
+    heading = exported.heading(lost)
+    files = {
+        f"{stem}_bodies.xml": _document(heading, _bodies(study.name, robot, pose, limits_m)),
+        f"{stem}_cables.xml": _document(heading, _cables(robot)),
+    }
+    return Export(files, tuple(lost))
+
+
+def _document(heading: Iterable[str], lines: Iterable[str]) -> bytes:
+    comment = [line.replace("--", "- -") for line in heading]
+    return "\n".join(
+        ['<?xml version="1.0" encoding="utf-8"?>', "<!--", *comment, "-->", *lines, ""]
+    ).encode()
+
+
+def _lost_of(body: Platform) -> list[str]:
+    lost = []
+    if body.wrench_N.any():
+        force, moment = _text(body.wrench_N[:3]), _text(body.wrench_N[3:])
+        lost.append(f"the wrench on the platform: force [{force}] N, moment [{moment}] N·m")
+    if body.hull_m is not None:
+        lost.append("the hull of the platform")
+    if body.inertia_kg_m2 is None and body.attachments_m is not None:
+        lost.append("moments of inertia, which the study does not give: 1 kg·m² stands in")
+    return lost
+
+
+def _lost_of_region(region: Region, limits_m: FloatArray | None) -> list[str]:
+    if limits_m is None:
+        return ["the region of the workspace"]
+    corners = np.stack(np.meshgrid(*limits_m.T), axis=-1).reshape(-1, 3)
+    if region.contains(corners).all():
+        return []
+    return ["the shape of the region: q_min and q_max are the box around it"]
+
+
+def _bodies(name: str, robot: Robot, pose: Poses, limits_m: FloatArray | None) -> Iterator[str]:
+    body = robot.platform
+    type_, axes, n_angles = JOINTS[robot.is_planar, robot.is_point_mass]
+    base = [0.0, float(pose.position_m[1]) if robot.is_planar else 0.0, 0.0]
+    q = {"q_initial": [*pose.position_m[axes], *_angles_rad(pose, n_angles)]}
+    if limits_m is not None:
+        for key, end, angle in zip(("q_min", "q_max"), limits_m, (-np.pi, np.pi), strict=True):
+            q[key] = [*end[axes], *[angle] * n_angles]
+    coordinates = " ".join(f'{key}="{_text(values)}"' for key, values in q.items())
+    inertia = np.eye(3) if body.inertia_kg_m2 is None else body.inertia_kg_m2
+    moments = (f"<{tag}>{_text([inertia[i, j]])}</{tag}>" for tag, i, j in INERTIA)
+    yield "<bodies_system>"
+    yield "<links>"
+    yield f'<link_rigid num="1" name={quoteattr(one_line(name))}>'
+    yield f'<joint type="{type_}" {coordinates}/>'
+    yield f"<physical><mass>{_text([body.mass_kg])}</mass>"
+    yield f"<com_location>{_text(body.centre_of_mass_m)}</com_location>"
+    yield "<end_location>0 0 0</end_location>"
+    yield f'<inertia ref="com">{"".join(moments)}</inertia></physical>'
+    yield f"<parent><num>0</num><location>{_text(base)}</location></parent>"
+    yield "</link_rigid>"
+    yield "</links>"
+    yield "</bodies_system>"
+
+
+def _angles_rad(pose: Poses, count: int) -> list[float]:
+    """Return angles about the body's own x, y and z, or the one about y that turns a plane."""
+    if count == 1:
+        return [float(np.arctan2(pose.rotation[0, 2], pose.rotation[0, 0]))]
+    angles = Rotation.from_matrix(pose.rotation).as_euler("XYZ")
+    return angles.tolist() if count else []
+
+
+def _cables(robot: Robot) -> Iterator[str]:
+    limit_N = robot.winches.tension_max_N
+    properties = (
+        f"<properties><force_min>{_text([robot.tension_min_N])}</force_min>"
+        f"<force_max>{'Inf' if limit_N is None else _text([limit_N])}</force_max></properties>"
+    )
+    yield '<cables default_cable_set="main">'
+    yield '<cable_set id="main">'
+    rows = zip(robot.exit_points_m, robot.attachments_m, strict=True)
+    for number, (exit_m, attachment_m) in enumerate(rows, start=1):
+        yield f'<cable_ideal name="cable {number}" attachment_reference="joint">'
+        yield properties
+        yield f"<attachments>{_exit(exit_m, robot.pulley_radius_m)}"
+        yield f"{_attachment(1, attachment_m)}</attachments>"
+        yield "</cable_ideal>"
+    yield "</cable_set>"
+    yield "</cables>"
+
+
+def _exit(exit_m: FloatArray, radius_m: float) -> str:
+    if radius_m == 0.0:
+        return _attachment(0, exit_m)
+    return (
+        f"<base_rotating_pulley><fixed_location>{_text(exit_m)}</fixed_location>"
+        f"<pulley_radius>{_text([radius_m])}</pulley_radius>"
+        "<cable_entry_vector>0 0 1</cable_entry_vector></base_rotating_pulley>"
+    )
+
+
+def _attachment(link: int, place_m: FloatArray) -> str:
+    return f"<attachment><link>{link}</link><location>{_text(place_m)}</location></attachment>"
+
+
+def _text(values: Iterable[float]) -> str:
+    """Return numbers with all their digits; 0.0 makes a plain zero of −0."""
+    return " ".join(repr(float(value) + 0.0) for value in values)

@@ -1,0 +1,36 @@
+"""The formats by their names, and what each needs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from designer.export.caspr import to_caspr
+from designer.export.robot import Export, ExportedRobot
+from designer.export.workshop import to_csv
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """One format.
+
+    Parameters
+    ----------
+    write : callable
+        From the robot and the stem of the files' names to the files.
+    ending : str
+        How the first of them ends.
+    needs_cables, needs_ropes : bool
+        Whether the design is solved for it, and whether that must come to ropes of a catalogue.
+    """
+
+    write: Callable[[ExportedRobot, str], Export]
+    ending: str
+    needs_cables: bool = True
+    needs_ropes: bool = False
+
+
+FORMATS = {
+    "caspr": Format(to_caspr, "_bodies.xml", needs_cables=False),
+    "csv": Format(to_csv, ".csv", needs_ropes=True),
+}

@@ -1,0 +1,211 @@
+"""The robot of a study as other programs get it: as built, at rest, on the cables of the design."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from designer import __version__
+from designer.analysis.analyse import Analysis
+from designer.analysis.lengths import design_cable_of
+from designer.arrays import frozen_array
+from designer.errors import InputError, one_line
+from designer.grades.registry import Catalogue
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict
+from designer.model.workspace import Workspace
+from designer.progress import SILENT, Reporter
+from designer.selection.qualities import DesignCable
+from designer.statics.inverse import Statics, solve_sagging
+from designer.study import Study, as_built_by, declared_settings
+
+_READ = ("selection.chosen",)
+"""Of ``result.json``: nothing is computed that only other parts of it show."""
+
+
+@dataclass(frozen=True, slots=True)
+class Export:
+    """What is written for another program.
+
+    Parameters
+    ----------
+    files : mapping of str to bytes
+        Content of each file by its name, that of the user first.
+    lost : tuple of str
+        What the study has and the files do not, a line each; it stands in the files as well.
+    """
+
+    files: Mapping[str, bytes]
+    lost: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class ExportedRobot:
+    """A study as the formats take it; what is solved for it is solved when it is first read.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        Of the study; see `of`.
+    """
+
+    analysis: Analysis
+
+    @classmethod
+    def of(
+        cls, study: Study, catalogue: Catalogue | None = None, reporter: Reporter = SILENT
+    ) -> ExportedRobot:
+        """Return the robot of a study; parameters are those of `designer.analyse`.
+
+        Its answer is not proved: a proof changes no number of it.
+
+        Raises
+        ------
+        InputError
+            If the study cannot be answered.
+        """
+        if study.workspace is not None:
+            study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
+        return cls(Analysis.begin(study, catalogue, reporter=reporter, keep=_READ))
+
+    @property
+    def study(self) -> Study:
+        """The study."""
+        return self.analysis.study
+
+    def has_ropes(self) -> bool:
+        """Tell whether the design comes to ropes of the catalogue.
+
+        Raises
+        ------
+        InputError
+            If the study does not ask for them.
+        """
+        if self.study.selection is None:
+            problem = "is missing: without a rope there is nothing to cut"
+            expected = "a selection of grades, and the workspace that it is for"
+            raise InputError([self.study.source.fault("selection", problem, expected)])
+        return self.analysis.assignment.is_found
+
+    @cached_property
+    def robot(self) -> Robot:
+        """The robot as the declared effects have it, at rest."""
+        return as_built_by(self.study).robot.at_rest
+
+    @cached_property
+    def design(self) -> DesignCable | None:
+        """Its cables, as `designer lengths` has them; None where no rope serves the study."""
+        return design_cable_of(self.analysis)
+
+    @cached_property
+    def reference(self) -> Statics:
+        """The equilibrium at the configured pose or, without one, at the worst place (no axes).
+
+        Raises
+        ------
+        InputError
+            If the cables of the design do not hold it.
+        """
+        pose = self.study.pose
+        return self._held(self.worst_pose if pose is None else pose, "pose")
+
+    @cached_property
+    def worst(self) -> Statics | None:
+        """The equilibrium where the cables are used most; None without a workspace."""
+        pose = self.worst_pose
+        return None if self.study.workspace is None else self._held(pose, "workspace")
+
+    @property
+    def worst_pose(self) -> Poses:
+        """Where the cables are used most of all the workspace, whatever the load case."""
+        analysis = self.analysis
+        if analysis.ropes is not None:
+            return Poses.at(analysis.ropes.place)
+        assert analysis.workspace is not None
+        assert analysis.workspace.sagging is not None
+        return analysis.workspace.sagging.pose
+
+    def _held(self, pose: Poses, field: str) -> Statics:
+        design = self.design
+        assert design is not None
+        statics = solve_sagging(self.robot, pose, design.cable)
+        if not statics.is_solved:
+            reason = Verdict(int(statics.verdict)).label
+            problem = f"the robot at rest is not held there by {design.name} ({reason})"
+            expected = "a pose in which the cables of the design are in equilibrium"
+            raise InputError([self.study.source.fault(field, problem, expected)])
+        return statics
+
+    def heading(self, lost: Sequence[str]) -> list[str]:
+        """Return the lines that begin a file: where it is from, and what is lost."""
+        study, sha = self.study, self.study.source.sha256
+        lines = [
+            f"{one_line(study.name)}, exported by cdpr-designer {__version__}",
+            f"from {study.source.path.name}" + (f", SHA-256 {sha}" if sha else ""),
+            "SI units: m, kg, s, N, rad",
+        ]
+        return lines + [f"Not in this file: {line}" for line in lost]
+
+
+def lost_by_all(study: Study) -> list[str]:
+    """Return what no file for a simulation takes of a study, a line each."""
+    lost, space = [], study.workspace
+    if study.load_cases:
+        names = ", ".join(case.name for case in study.load_cases)
+        lost.append(f"load cases ({names}); the platform is at rest under the loads of robot")
+    if space is not None:
+        lost += _lost_of(space)
+    if study.selection is not None:
+        lost.append("how the rope was chosen, with its limits, its factors of safety and a proof")
+    if study.robot.winches.drum_diameter_m or study.robot.winches.drum:
+        lost.append("drums, gears, motors and sheaves of the winches")
+    if study.measurements is not None:
+        lost.append("measured data")
+    if study.uncertainty is not None:
+        lost.append("what is uncertain")
+    settings = declared_settings(study)
+    unseen = [setting.effect.key for setting in settings if not setting.effect.reaches_design]
+    if unseen:
+        lost.append(f"effects that do not reach a design: {', '.join(unseen)}")
+    return lost
+
+
+def _lost_of(workspace: Workspace) -> list[str]:
+    asked = {
+        "clearance": workspace.clearance_m,
+        "floor": workspace.floor_m,
+    }
+    named = [name for name, value in asked.items() if value is not None]
+    lost = [f"what the workspace asks for: {', '.join(named)}"] if named else []
+    if workspace.region.is_discrete:
+        lost.append("the listed poses or the path of the workspace, with its times")
+    return lost
+
+
+def levelled(robot: Robot, poses: Poses) -> tuple[Robot, Poses, str]:
+    """Return robot and poses in a frame in which things fall along −z, and what was turned.
+
+    For programs that know no other gravity. A planar robot then lies in the x-z plane. The text is
+    empty where nothing is turned.
+    """
+    turn = robot.level
+    if np.allclose(turn, np.eye(3), rtol=0.0, atol=1e-15):
+        return robot, poses, ""
+    body, winches = robot.platform, robot.winches
+    wrench_N = (body.wrench_N.reshape(2, 3) @ turn.T).ravel()
+    if winches.positions_m is not None:
+        winches = replace(winches, positions_m=frozen_array(winches.positions_m @ turn.T))
+    level = replace(
+        robot,
+        exit_points_m=frozen_array(robot.exit_points_m @ turn.T),
+        platform=replace(body, wrench_N=frozen_array(wrench_N)),
+        tilt_rad=frozen_array(np.zeros(2)),
+        gravity_direction=frozen_array([0.0, 0.0, -1.0]),
+        winches=winches,
+    )
+    rows = "; ".join(" ".join(f"{x:.9g}" for x in row) for row in turn.tolist())
+    note = f"the frame of the study: coordinates here are [{rows}] times those"
+    return level, Poses(poses.position_m @ turn.T, turn @ poses.rotation), note
