@@ -22,11 +22,14 @@ from pairs.scenario import (
     in_motion,
     kept_by_sheaves,
     level_directions,
+    line_at,
     problem_of,
     random_places,
-    turn_toward,
+    turn_at,
+    turns_of,
     up_of,
 )
+from scipy.interpolate import CubicSpline
 
 from designer.analysis.analyse import Analysis
 from designer.model.load_case import Loaded
@@ -40,7 +43,7 @@ SAME = 1e-6
 AT_SAG = 1e-5
 """Where a limit on sag governs: the solvers keep it by a least pull that is on the safe side."""
 DIFFERENCES = 1e-3
-"""Of stiffness, which the reference takes from differences."""
+"""Of stiffness, which the reference takes from differences, and of a walk along a rope in steps."""
 ELEMENTS, ON_PULLEYS = 5e-3, 2e-2
 """Of frequencies: finite elements hang from where cables leave pulleys, and do not roll."""
 
@@ -181,6 +184,7 @@ def disagreements(
 ) -> Iterator[str]:
     """Yield in a line each figure of an analysis that the reference does not confirm."""
     ropes, rng = ropes_of(analysis), np.random.default_rng(seed)
+    text = with_choices(text, analysis) | {"rope_m": ropes[0][1]["diameter"]}
     if analysis.assignment.has_groups:
         yield from _groups(text, ropes, analysis, rng, others)
         return
@@ -189,6 +193,10 @@ def disagreements(
     for one in analysis.requirements:
         if one.id in QUANTITIES:
             yield from _requirement(text, ropes, analysis, one)
+        if one.id == "rope_life" and len(ropes) == analysis.study.robot.degrees_of_freedom:
+            yield from _life(text, ropes, analysis, one)
+    if "positions" in text["robot"].get("winches", {}):
+        yield from _reactions(text, ropes, analysis)
 
 
 def _case(
@@ -255,11 +263,9 @@ def _requirement(text, ropes, analysis: Analysis, one: Requirement) -> Iterator[
     )
     quantity = QUANTITIES[one.id]
     name = f"{one.load_case} {one.direction} {one.id}"
-    facing = text["workspace"].get("orientation")
-    if isinstance(facing, dict):
-        turn = turn_toward(one.place[:3], facing)
-        if not np.allclose(one.place[3:], turn, rtol=0.0, atol=1e-9):
-            yield f"{name}: turned by {one.place[3:]}, reference {turn}"
+    turn = turn_at(text, one.place[:3])
+    if turn is not None and not np.allclose(one.place[3:], turn, rtol=0.0, atol=1e-9):
+        yield f"{name}: turned by {one.place[3:]}, reference {turn}"
     state = state_at(there, loaded, one.place)
     if state is None:
         yield f"{name}: the reference does not hold {one.place}"
@@ -286,9 +292,106 @@ def _requirement(text, ropes, analysis: Analysis, one: Requirement) -> Iterator[
             yield f"{name}: {quantity(state, text):.9g} at {place}, told {ours:.9g}"
 
 
+def with_choices(text: Mapping[str, Any], analysis: Analysis) -> dict[str, Any]:
+    """Return a text with the orientations that are ours to choose."""
+    free, workspace = text["workspace"].get("orientation_free"), analysis.study.workspace
+    if free is None or workspace is None:
+        return dict(text)
+
+    def turn_of(position: np.ndarray) -> np.ndarray:
+        turn = workspace.space.places(position[None])[0, 3:]
+        ends = np.array([free.get(name, [0.0, 0.0]) for name in ("rx", "ry", "rz")])
+        assert (turn >= ends[:, 0] - 1e-12).all()
+        assert (turn <= ends[:, 1] + 1e-12).all()
+        return turn
+
+    return {**text, "turn_of": turn_of}
+
+
+def _reactions(text, ropes, analysis: Analysis) -> Iterator[str]:
+    """Compare the forces on the supports with the pulls of both branches of each rope."""
+    cases = {case["name"]: case for case in text.get("load_cases", ())}
+    winches = np.array(text["robot"]["winches"]["positions"])
+    for one in analysis.reactions:
+        loaded = one.loaded
+        if loaded.lost_cable is not None:
+            continue
+        there = Situation(
+            text, ropes, cases.get(one.load_case, {}), loaded.wind, loaded.inertia, None,
+            loaded.wrench_N,
+        )  # fmt: skip
+        state = state_at(there, loaded, one.place)
+        if state is None:
+            yield f"reaction on {one.mast}: the reference does not hold {one.place}"
+            continue
+        pull, cable = state.exit_pull_N[one.mast - 1], one.mast - 1
+        along = winches[cable] - state.problem.exits_m[cable]
+        force = np.linalg.norm(pull) * along / np.linalg.norm(along) - pull
+        if not np.allclose(one.force_N, force, rtol=SAME, atol=SAME * np.linalg.norm(pull)):
+            yield f"{one.load_case}: reaction on {one.mast} {one.force_N}, reference {force}"
+
+
+def _life(text, ropes, analysis: Analysis, one: Requirement) -> Iterator[str]:
+    """Walk along a rope and count what bends each place of it, over the sheave alone."""
+    loaded, life = one.loaded, text["selection"]["rope_life"]
+    winches = text["robot"].get("winches", {})
+    if "positions" in winches and "drum_diameter" in winches:  # then drums bend it as well
+        return
+    cases = {case["name"]: case for case in text.get("load_cases", ())}
+    there = Situation(
+        text, ropes, cases.get(one.load_case, {}), loaded.wind, None, None, loaded.wrench_N
+    )
+    shares, turn = np.linspace(0.0, 1.0, 81), turns_of(text, 1, np.random.default_rng(0))[0]
+    poses = [Pose(line_at(text, share)[0], turn) for share in shares]
+    states = [solve(there.problem_at(pose), pose) for pose in poses]
+    if any(state is None for state in states):
+        yield "rope life: the reference does not hold the path"
+        return
+    fine = np.linspace(0.0, 1.0, 4001)
+    runs = []
+    for k in range(len(ropes)):
+        size = ropes[k][1]
+        pull = [float(np.linalg.norm(state.exit_pull_N[k])) for state in states]
+        tension = CubicSpline(shares, pull)(fine)
+        ends = [
+            CubicSpline(shares, [length[k] for length in lengths])(fine)
+            for lengths in ([s.free_m for s in states], [s.total_m for s in states])
+        ]
+        runs.append(1.0 / worn(ends, tension, size["diameter"], text, life))
+    if not np.isclose(one.capacity, min(runs), rtol=DIFFERENCES):
+        yield f"rope life {one.capacity:.6g} runs, reference {min(runs):.6g}"
+
+
+def worn(ends, tension: np.ndarray, d: float, text, life) -> float:
+    """Return the share of its life that a run takes of the place that wears most."""
+    low, high = min(end.min() for end in ends), max(end.max() for end in ends)
+    places = low + (high - low) * (np.arange(1000) + 0.5) / 1000
+    over, damage, bent = text["selection"]["sheave_diameter"], np.zeros(1000), np.zeros(1000, bool)
+    crossed = []
+    for end in ends:
+        for k in np.flatnonzero(np.diff(end)):
+            hit = (places - end[k]) * (places - end[k + 1]) < 0.0
+            bent |= hit
+            losses = text["robot"].get("winches", {}).get("sheave_efficiency", 1.0)
+            hauled = ends[1][k + 1] < ends[1][k]
+            pull = 0.5 * (tension[k] + tension[k + 1]) / (losses if hauled else 1.0)
+            crossed.append((hit, pull))
+    zone = max(bent.sum() * (high - low) / 1000 / d, 10.0)
+    d_mm, ratio = 1e3 * d, np.log10(over / d)
+    size = 0.52 / ((max(d_mm, 4.0) / 16.0) ** 0.3 - 0.48)
+    length = 1.49 / (2.49 - ((zone - 2.5) / 57.5) ** -0.14)
+    for hit, pull in crossed:
+        load = np.log10(pull / d_mm**2) - 0.4 * np.log10(life["wire_strength"] / 1770e6)
+        borne = 10.0 ** (
+            life["b0"] + (life["b1"] + life["b3"] * ratio) * load + life["b2"] * ratio
+        ) * size * length  # fmt: skip
+        damage[hit] += 0.5 / borne
+    return float(damage.max())
+
+
 def _severity(one: Requirement, text) -> float:
     """Return the quantity of a requirement so that less of it is worse."""
-    if one.id in ("sag", "winch_tension"):
+    if one.id in ("sag", "winch_tension", "winch_torque"):
         return -one.demand
     if one.id == "excitation":
         return -one.utilisation
@@ -301,6 +404,14 @@ def _excitation(state: State, text) -> float:
     return -float(np.minimum(high / frequency, frequency / low).max())
 
 
+def _torque_Nm(state: State, text) -> float:
+    """Return the largest torque of a motor, its rope in the outermost layer."""
+    winches = text["robot"]["winches"]
+    radius = 0.5 * winches["drum_diameter"] + (winches.get("layers", 1) - 0.5) * text["rope_m"]
+    pull = np.linalg.norm(state.exit_pull_N, axis=1).max() / kept_by_sheaves(text)
+    return float(pull * radius / (winches["gear_ratio"] * winches["efficiency"]))
+
+
 QUANTITIES = {
     "least_tension": lambda state, _: float(state.least_tension_N.min()),
     "stability": lambda state, _: least_stiffness_N_per_m(state),
@@ -309,6 +420,7 @@ QUANTITIES = {
     "winch_tension": lambda state, text: (
         -float(np.linalg.norm(state.exit_pull_N, axis=1).max()) / kept_by_sheaves(text)
     ),
+    "winch_torque": lambda state, text: -_torque_Nm(state, text),
     "floor": lambda state, _: lowest_m(state),
     "clearance": lambda state, _: clearance_m(state),
     "excitation": _excitation,

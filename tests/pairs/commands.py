@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import yaml
-from pairs.agreement import SAME, is_balanced, ropes_of
+from pairs.agreement import SAME, is_balanced, ropes_of, with_choices
 from pairs.options import GRADES
 from pairs.reference import Pose, hang, solve
 from pairs.scenario import lines_of, problem_of, random_places
@@ -33,7 +33,7 @@ ROWS = 24
 def lengths(text: Mapping[str, Any], analysis: Analysis, folder: Path) -> Iterator[str]:
     """Compare lengths with those of the reference, at rest under the study's own load."""
     problem = problem_of(text, ropes_of(analysis))
-    poses = random_places(text, {}, 3, np.random.default_rng(1))
+    poses = random_places(with_choices(text, analysis), {}, 3, np.random.default_rng(1))
     places = [np.concatenate([pose.position_m, pose.turn_rad]) for pose in poses]
     ours = lengths_of(analysis, Poses.at(np.array(places)))
     for pose, length, tension in zip(
@@ -158,7 +158,7 @@ def diagnose(text: Mapping[str, Any], analysis: Analysis, folder: Path) -> Itera
     )
     drum = effects.get("drum_scale", {}).get("scale", 1.0)
     rng = np.random.default_rng(2)
-    places = random_places(text, {}, ROWS, rng)
+    places = random_places(with_choices(text, analysis), {}, ROWS, rng)
     poses = [_beside(places[k % len(places)], text, rng) for k in range(ROWS)]
     states = [state for pose in poses if (state := solve(problem, pose, starts=2)) is not None]
     n = problem.n

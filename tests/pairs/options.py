@@ -153,12 +153,58 @@ PATHS: Mapping[str, tuple[list[float], list[float]]] = {
 PATH_S = 6.0
 
 
-def path_text(name: str) -> str:
-    """Return what a file of a path holds."""
-    rows = (
-        f"{t},{x!r},{y!r},{z!r}" for t, (x, y, z) in zip((0.0, PATH_S), PATHS[name], strict=True)
+Row = tuple[list[float], list[float], str]
+
+
+def _rows(base: Text, turns: list[list[float]], owners: tuple[str, str]) -> list[Row]:
+    """Return poses of a base, each with the load case that it is for, '' for all."""
+    first, *_, last = base["workspace"]["region"]["points"]
+    between = [0.7 * a + 0.3 * b for a, b in zip(first, last, strict=True)]
+    return [
+        (first, turns[0], owners[0]),
+        (last, turns[1], ""),
+        (between, turns[2], owners[1]),
+    ]
+
+
+_TURNS = [[0.0, 0.05, 0.0], [0.0, -0.03, 0.0], [0.0, 0.01, 0.0]]
+POSES: Mapping[str, list[Row]] = {
+    f"{kind}-{name}.csv": _rows(base, _TURNS, ("", owner))
+    for name, base in BASES.items()
+    for kind, owner in (("poses", ""), ("poses-of-case", "working"))
+}
+"""Files of poses, with orientations for what can turn."""
+
+
+def file_text(name: str) -> str:
+    """Return what a file beside a study holds."""
+    if name in PATHS:
+        rows = [[t, *place] for t, place in zip((0.0, PATH_S), PATHS[name], strict=True)]
+        return _csv(["time_s", *_AXES], rows)
+    base = BASES[name.removesuffix(".csv").rpartition("-")[2]]
+    turns = ["rx_rad", "ry_rad", "rz_rad"] * ("attachments" in base["robot"]["platform"])
+    owner = ["load_case"] * name.startswith("poses-of-case")
+    rows = [[*at, *turn[: len(turns)], *[of][: len(owner)]] for at, turn, of in POSES[name]]
+    return _csv([*_AXES, *turns, *owner], rows)
+
+
+_AXES = ["x_m", "y_m", "z_m"]
+
+
+def _csv(names: list[str], rows: list[list[Any]]) -> str:
+    return "\n".join([",".join(names), *(",".join(map(str, row)) for row in rows), ""])
+
+
+def files_of(study: Text) -> list[str]:
+    """Return the names of the files beside a study."""
+    workspace = study.get("workspace", {})
+    facing = workspace.get("orientation")
+    named = (
+        workspace.get("path"),
+        workspace.get("poses"),
+        facing.get("table") if isinstance(facing, dict) else None,
     )
-    return "\n".join(["time_s,x_m,y_m,z_m", *rows, ""])
+    return [name for name in named if name in PATHS or name in POSES]
 
 
 POINT = ("crane", "four")
@@ -265,9 +311,7 @@ def _wrench(force: list[float]) -> Callable[[Text], Text]:
                                     force[2]]}  # fmt: skip
 
 
-def _wrench_box(study: Text) -> Text:
-    across = [0.0, 0.0] if study["robot"].get("planar") else [-70.0, 40.0]
-    return {"force": [[-60.0, 80.0], across, [-300.0, 100.0]]}
+_FORCES = {"force": [[-60.0, 80.0], [0.0, 0.0], [-300.0, 100.0]]}
 
 
 def _wrench_list(study: Text) -> list[Text]:
@@ -294,12 +338,49 @@ def _lines(study: Text) -> None:
     study["robot"]["attached"] = [lines[k % 3] for k in range(n_cables)]
 
 
-def _path(study: Text) -> None:
+def _beside(kind: str, study: Text) -> str:
     name = next(name for name, base in BASES.items() if base["name"] == study["name"])
-    study["workspace"]["path"] = f"path-{name}.csv"
-    study["workspace"].pop("proof")
-    if "points" in study["workspace"]["region"]:
+    return f"{kind}-{name}.csv"
+
+
+def _path(study: Text) -> None:
+    study["workspace"]["path"] = _beside("path", study)
+    study["workspace"].pop("proof", None)
+    if "points" in study["workspace"].get("region", {}):
         del study["workspace"]["region"]
+
+
+def _poses(kind: str) -> Callable[[Text], None]:
+    def change(study: Text) -> None:
+        study["workspace"]["poses"] = _beside(kind, study)
+        if "points" in study["workspace"].get("region", {}):
+            del study["workspace"]["region"]
+        if kind == "poses-of-case":
+            case(study)
+
+    return change
+
+
+def _life(study: Text) -> None:
+    _path(study)
+    study["selection"].setdefault("sheave_diameter", 0.2)
+    constants = {"b0": 1.278, "b1": 0.029, "b2": 6.241, "b3": -1.613}
+    study["selection"]["rope_life"] = {
+        **constants, "wire_strength": 1.77e9, "source": "a test", "runs_per_day": 3.0,
+        "days_min": 5.0,
+    }  # fmt: skip
+
+
+def _motor(study: Text) -> None:
+    motor = {"drum_diameter": 0.25, "layers": 2, "gear_ratio": 12.0, "efficiency": 0.9}
+    study["robot"].setdefault("winches", {}).update(**motor, motor={"torque": 60.0})
+
+
+def _positions(study: Text) -> None:
+    anchors = study["robot"]["anchors"]
+    study["robot"].setdefault("winches", {})["positions"] = [
+        [x + 0.4, y, z - 2.5 - 0.1 * k] for k, (x, y, z) in enumerate(anchors)
+    ]
 
 
 def _nothing(study: Text) -> None:
@@ -317,7 +398,7 @@ OPTIONS: tuple[Option, ...] = (
     Option(
         "case_wrench", "force of a load case", ALL, _at("case.wrench", _wrench([-50, 80, -100]))
     ),
-    Option("wrench_box", "box of forces", ALL, _at("case.wrench_set", _wrench_box)),
+    Option("wrench_box", "box of forces", ALL, _set("case.wrench_set", _FORCES)),
     Option("wrench_list", "list of forces", ALL, _at("case.wrench_set", _wrench_list)),
     Option("dynamic_factor", "dynamic factor", ALL, _set("case.dynamic_factor", 1.3)),
     Option("acceleration", "acceleration", ALL, _set("case.acceleration", 0.6)),
@@ -396,6 +477,18 @@ OPTIONS: tuple[Option, ...] = (
         BODY,
         _set("workspace.orientation", {"toward": [1.0, -2.0, 40.0], "axis": [0.0, 0.05, 1.0]}),
     ),
+    Option(
+        "table",
+        "table of orientations",
+        BODY,
+        lambda s: _set("workspace.orientation", {"table": _beside("poses", s)})(s),
+    ),
+    Option(
+        "orientation_free",
+        "best orientation of a range",
+        BODY,
+        _set("workspace.orientation_free", {"ry": [-0.04, 0.06]}),
+    ),
     Option("box", "region with a volume", ALL, _box),
     Option("fibre", "fibre rope", ALL, _set("selection.grades", ["pairs-fibre"])),
     Option("tension_min", "least tension", REDUNDANT, _set("robot.tension_min", 40.0)),
@@ -427,6 +520,8 @@ OPTIONS: tuple[Option, ...] = (
         ALL,
         lambda s: s["robot"].setdefault("winches", {}).update(sheave_efficiency=0.96, sheaves=2),
     ),
+    Option("motor", "torque of the motors", ALL, _motor),
+    Option("winch_positions", "places of the winches", ALL, _positions),
     Option("spooling", "layers on the drums", ALL, _spooling),
     Option(
         "attached",
@@ -454,7 +549,10 @@ OPTIONS: tuple[Option, ...] = (
             {"payload": {"uniform": 0.1}, "modulus": {"uniform": 0.01}, "samples": 128},
         ),
     ),
+    Option("poses", "list of poses", ALL, _poses("poses")),
+    Option("poses_of_case", "list of poses, some for a load case", ALL, _poses("poses-of-case")),
     Option("path", "path with inertia", ALL, _path),
+    Option("rope_life", "life of the rope along a path", ALL, _life),
     Option(
         "lengths",
         "`designer lengths`",

@@ -12,8 +12,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from pairs.options import PATH_S, PATHS
+from pairs.options import PATH_S, PATHS, POSES
 from pairs.reference import Pose, Problem
+from scipy.interpolate import RBFInterpolator
 from scipy.spatial.transform import Rotation
 
 GRAVITY = 9.81
@@ -182,6 +183,10 @@ def random_places(study: Data, case: Data, count: int, rng: np.random.Generator)
         shares = rng.integers(401, size=count) / 400
         turn = turns_of(study, 1, rng)[0]
         return [Pose(line_at(study, share)[0], turn) for share in shares]
+    if "poses" in study["workspace"] and not case.get("region"):
+        rows = POSES[study["workspace"]["poses"]]
+        listed = [row for row in rows if row[2] in ("", case.get("name"))]
+        return [listed_pose(study, *row[:2]) for row in listed]
     region = case.get("region") or study["workspace"]["region"]
     if "points" in region:
         positions = np.array(region["points"], dtype=float)
@@ -197,14 +202,34 @@ def random_places(study: Data, case: Data, count: int, rng: np.random.Generator)
             plan = first + shares[:, :1] * (last - first)
             height = heights[0] + shares[:, 2] * (heights[1] - heights[0])
             positions = np.column_stack([plan, height])
-    facing = study["workspace"].get("orientation")
-    if isinstance(facing, dict):
-        return [Pose(position, turn_toward(position, facing)) for position in positions]
+    if turn_at(study, positions[0]) is not None:
+        return [Pose(position, turn_at(study, position)) for position in positions]
     turns = turns_of(study, max(count, 1), rng)
     if "points" in region and len(turns) < count:
         return [Pose(position, turn) for position in positions for turn in turns]
     at = rng.integers(len(positions), size=count) if "points" in region else np.arange(count)
     return [Pose(positions[k], turns[rng.integers(len(turns))]) for k in at]
+
+
+def listed_pose(study: Data, position: list[float], turn: list[float]) -> Pose:
+    """Return a pose of a list, of a point mass without its orientation."""
+    turns = "attachments" in study["robot"]["platform"]
+    return Pose(np.array(position), np.array(turn) if turns else np.zeros(3))
+
+
+def turn_at(study: Data, position: np.ndarray) -> np.ndarray | None:
+    """Return how a platform is turned whose orientation follows its position; None for others."""
+    facing = study["workspace"].get("orientation")
+    if "turn_of" in study:
+        return study["turn_of"](position)
+    if not isinstance(facing, dict):
+        return None
+    if "table" not in facing:
+        return turn_toward(position, facing)
+    rows = POSES[facing["table"]]
+    places, turns = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
+    between = RBFInterpolator(places, turns, kernel="linear", degree=0)(position[None])[0]
+    return np.clip(between, turns.min(axis=0), turns.max(axis=0))
 
 
 def line_at(study: Data, share: float) -> tuple[np.ndarray, np.ndarray]:

@@ -24,7 +24,7 @@ if __name__ == "__main__":  # started as a script
 import yaml
 from pairs.agreement import disagreements
 from pairs.commands import COMMANDS
-from pairs.options import GRADES, OPTIONS, PATHS, Option, base_of, path_text, study_of
+from pairs.options import GRADES, OPTIONS, Option, base_of, file_text, files_of, study_of
 
 import designer
 from designer.analysis.analyse import Analysis
@@ -59,8 +59,8 @@ def catalogue() -> Catalogue:
 
 def study_in(text: dict[str, Any], folder: Path) -> Study:
     """Return the study of a text; `InputError` where it is refused."""
-    if (name := text.get("workspace", {}).get("path")) in PATHS:
-        (folder / name).write_text(path_text(name), encoding="utf-8")
+    for name in files_of(text):
+        (folder / name).write_text(file_text(name), encoding="utf-8")
     path = folder / "study.yaml"
     path.write_text(yaml.safe_dump(text, sort_keys=False), encoding="utf-8")
     return designer.read_study(path, with_plugins=False)

@@ -45,6 +45,10 @@ QUICK = (
     ("ice", "attached_each"),
     ("wrench_box", "dynamic_factor"),
     ("wrench_list", "platform_mass"),
+    ("motor", "sheave_losses"),
+    ("winch_positions", "winch_tension"),
+    ("case_mass", "poses_of_case"),
+    ("fitting", "rope_life"),
 )
 """Pairs on the robot of three cables, which is quick, of as many options as there are."""
 
