@@ -16,6 +16,7 @@ class Target(StrEnum):
     """The formats, as `designer.export.formats.FORMATS` has them."""
 
     CASPR = "caspr"
+    MOORDYN = "moordyn"
     CSV = "csv"
 
 
@@ -32,6 +33,9 @@ def export(
 
     caspr: a model of CASPR, which `designer import` reads back (_bodies.xml, and _cables.xml beside
     it). Lost: mass, sag and stretch of cables, loads beside the weight.
+
+    moordyn: a deck of MoorDyn v2 for the reference pose in air, which MoorPy reads too (.txt).
+    Lost: pulleys, forces on the platform that are not vertical (it is then held), a robot's plane.
 
     Numbers are of the robot as the declared effects have it, at rest under the loads of `robot`,
     with the ropes of the answer. What a study has and a file does not is told here and in the file.

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from designer.arrays import FloatArray
 from designer.errors import one_line
-from designer.export.robot import Export, ExportedRobot, levelled, lost_by_all
+from designer.export.robot import Export, ExportedRobot, inertia_of, levelled, lost_by_all
 from designer.model.region import Region
 from designer.model.robot import Platform, Poses, Robot
 
@@ -68,7 +68,7 @@ def _lost_of(body: Platform) -> list[str]:
     if body.hull_m is not None:
         lost.append("the hull of the platform")
     if body.inertia_kg_m2 is None and body.attachments_m is not None:
-        lost.append("moments of inertia, which the study does not give: 1 kg·m² stands in")
+        lost.append("moments of inertia, not in the study: those of a solid box stand in")
     return lost
 
 
@@ -90,7 +90,7 @@ def _bodies(name: str, robot: Robot, pose: Poses, limits_m: FloatArray | None) -
         for key, end, angle in zip(("q_min", "q_max"), limits_m, (-np.pi, np.pi), strict=True):
             q[key] = [*end[axes], *[angle] * n_angles]
     coordinates = " ".join(f'{key}="{_text(values)}"' for key, values in q.items())
-    inertia = np.eye(3) if body.inertia_kg_m2 is None else body.inertia_kg_m2
+    inertia = np.eye(3) if robot.is_point_mass else inertia_of(body)
     moments = (f"<{tag}>{_text([inertia[i, j]])}</{tag}>" for tag, i, j in INERTIA)
     yield "<bodies_system>"
     yield "<links>"

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from designer.export.caspr import to_caspr
+from designer.export.moordyn import to_moordyn
 from designer.export.robot import Export, ExportedRobot
 from designer.export.workshop import to_csv
 
@@ -32,5 +33,6 @@ class Format:
 
 FORMATS = {
     "caspr": Format(to_caspr, "_bodies.xml", needs_cables=False),
+    "moordyn": Format(to_moordyn, ".txt"),
     "csv": Format(to_csv, ".csv", needs_ropes=True),
 }

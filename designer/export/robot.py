@@ -11,10 +11,10 @@ import numpy as np
 from designer import __version__
 from designer.analysis.analyse import Analysis
 from designer.analysis.lengths import design_cable_of
-from designer.arrays import frozen_array
+from designer.arrays import FloatArray, frozen_array
 from designer.errors import InputError, one_line
 from designer.grades.registry import Catalogue
-from designer.model.robot import Poses, Robot
+from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.progress import SILENT, Reporter
@@ -22,6 +22,8 @@ from designer.selection.qualities import DesignCable
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Study, as_built_by, declared_settings
 
+_THINNEST = 0.1
+"""Edge of such a box over its longest, where attachments lie in a plane or on a line."""
 _READ = ("selection.chosen",)
 """Of ``result.json``: nothing is computed that only other parts of it show."""
 
@@ -183,6 +185,19 @@ def _lost_of(workspace: Workspace) -> list[str]:
     if workspace.region.is_discrete:
         lost.append("the listed poses or the path of the workspace, with its times")
     return lost
+
+
+def inertia_of(body: Platform) -> FloatArray:
+    """Return the moments of inertia about the centre of mass (3, 3), body frame [kg·m²].
+
+    Where the study gives none, those of a solid box as large as the attachments lie apart.
+    """
+    if body.inertia_kg_m2 is not None:
+        return body.inertia_kg_m2
+    assert body.attachments_m is not None
+    edges_m = np.ptp(body.attachments_m, axis=0)
+    square = np.maximum(edges_m, _THINNEST * edges_m.max()) ** 2
+    return np.asarray(body.mass_kg / 12.0 * np.diag(square.sum() - square))
 
 
 def levelled(robot: Robot, poses: Poses) -> tuple[Robot, Poses, str]:
