@@ -87,7 +87,7 @@ def _lost(robot: Robot, load: _Load, down_m: float) -> list[str]:
     body, lost = robot.platform, ["the worst pose; this is the reference pose alone"]
     if not load.is_whole:
         lost.append(
-            "the wrench on the platform, of which MoorDyn takes a vertical force at its origin alone: "
+            "the wrench on the platform: MoorDyn takes no more than a vertical force at its origin, so "
             "the platform is coupled, which keeps it in this pose"
         )
     elif body.wrench_N.any():
