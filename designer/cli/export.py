@@ -17,6 +17,7 @@ class Target(StrEnum):
 
     CASPR = "caspr"
     MOORDYN = "moordyn"
+    MUJOCO = "mujoco"
     CSV = "csv"
 
 
@@ -36,6 +37,9 @@ def export(
 
     moordyn: a deck of MoorDyn v2 for the reference pose in air, which MoorPy reads too (.txt).
     Lost: pulleys, forces on the platform that are not vertical (it is then held), a robot's plane.
+
+    mujoco: an MJCF model: spatial tendons that pull as our cables do, the reference pose and the
+    worst one as key frames (.xml). Lost: sag and mass of cables, pulleys.
 
     Numbers are of the robot as the declared effects have it, at rest under the loads of `robot`,
     with the ropes of the answer. What a study has and a file does not is told here and in the file.

@@ -6,7 +6,7 @@ about its own x, y and z, one in a plane about the plane's normal; attachments c
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -14,7 +14,15 @@ from scipy.spatial.transform import Rotation
 
 from designer.arrays import FloatArray
 from designer.errors import one_line
-from designer.export.robot import Export, ExportedRobot, inertia_of, levelled, lost_by_all
+from designer.export.robot import (
+    Export,
+    ExportedRobot,
+    inertia_of,
+    levelled,
+    lost_by_all,
+    numbers,
+    xml_document,
+)
 from designer.model.region import Region
 from designer.model.robot import Platform, Poses, Robot
 
@@ -47,23 +55,16 @@ def to_caspr(exported: ExportedRobot, stem: str) -> Export:
         lost += _lost_of_region(space.region, limits_m)
     heading = exported.heading(lost)
     files = {
-        f"{stem}_bodies.xml": _document(heading, _bodies(study.name, robot, pose, limits_m)),
-        f"{stem}_cables.xml": _document(heading, _cables(robot)),
+        f"{stem}_bodies.xml": xml_document(heading, _bodies(study.name, robot, pose, limits_m)),
+        f"{stem}_cables.xml": xml_document(heading, _cables(robot)),
     }
     return Export(files, tuple(lost))
-
-
-def _document(heading: Iterable[str], lines: Iterable[str]) -> bytes:
-    comment = [line.replace("--", "- -") for line in heading]
-    return "\n".join(
-        ['<?xml version="1.0" encoding="utf-8"?>', "<!--", *comment, "-->", *lines, ""]
-    ).encode()
 
 
 def _lost_of(body: Platform) -> list[str]:
     lost = []
     if body.wrench_N.any():
-        force, moment = _text(body.wrench_N[:3]), _text(body.wrench_N[3:])
+        force, moment = numbers(*body.wrench_N[:3]), numbers(*body.wrench_N[3:])
         lost.append(f"the wrench on the platform: force [{force}] N, moment [{moment}] N·m")
     if body.hull_m is not None:
         lost.append("the hull of the platform")
@@ -89,18 +90,18 @@ def _bodies(name: str, robot: Robot, pose: Poses, limits_m: FloatArray | None) -
     if limits_m is not None:
         for key, end, angle in zip(("q_min", "q_max"), limits_m, (-np.pi, np.pi), strict=True):
             q[key] = [*end[axes], *[angle] * n_angles]
-    coordinates = " ".join(f'{key}="{_text(values)}"' for key, values in q.items())
+    coordinates = " ".join(f'{key}="{numbers(*values)}"' for key, values in q.items())
     inertia = np.eye(3) if robot.is_point_mass else inertia_of(body)
-    moments = (f"<{tag}>{_text([inertia[i, j]])}</{tag}>" for tag, i, j in INERTIA)
+    moments = (f"<{tag}>{numbers(inertia[i, j])}</{tag}>" for tag, i, j in INERTIA)
     yield "<bodies_system>"
     yield "<links>"
     yield f'<link_rigid num="1" name={quoteattr(one_line(name))}>'
     yield f'<joint type="{type_}" {coordinates}/>'
-    yield f"<physical><mass>{_text([body.mass_kg])}</mass>"
-    yield f"<com_location>{_text(body.centre_of_mass_m)}</com_location>"
+    yield f"<physical><mass>{numbers(body.mass_kg)}</mass>"
+    yield f"<com_location>{numbers(*body.centre_of_mass_m)}</com_location>"
     yield "<end_location>0 0 0</end_location>"
     yield f'<inertia ref="com">{"".join(moments)}</inertia></physical>'
-    yield f"<parent><num>0</num><location>{_text(base)}</location></parent>"
+    yield f"<parent><num>0</num><location>{numbers(*base)}</location></parent>"
     yield "</link_rigid>"
     yield "</links>"
     yield "</bodies_system>"
@@ -117,8 +118,8 @@ def _angles_rad(pose: Poses, count: int) -> list[float]:
 def _cables(robot: Robot) -> Iterator[str]:
     limit_N = robot.winches.tension_max_N
     properties = (
-        f"<properties><force_min>{_text([robot.tension_min_N])}</force_min>"
-        f"<force_max>{'Inf' if limit_N is None else _text([limit_N])}</force_max></properties>"
+        f"<properties><force_min>{numbers(robot.tension_min_N)}</force_min>"
+        f"<force_max>{'Inf' if limit_N is None else numbers(limit_N)}</force_max></properties>"
     )
     yield '<cables default_cable_set="main">'
     yield '<cable_set id="main">'
@@ -137,16 +138,11 @@ def _exit(exit_m: FloatArray, radius_m: float) -> str:
     if radius_m == 0.0:
         return _attachment(0, exit_m)
     return (
-        f"<base_rotating_pulley><fixed_location>{_text(exit_m)}</fixed_location>"
-        f"<pulley_radius>{_text([radius_m])}</pulley_radius>"
+        f"<base_rotating_pulley><fixed_location>{numbers(*exit_m)}</fixed_location>"
+        f"<pulley_radius>{numbers(radius_m)}</pulley_radius>"
         "<cable_entry_vector>0 0 1</cable_entry_vector></base_rotating_pulley>"
     )
 
 
 def _attachment(link: int, place_m: FloatArray) -> str:
-    return f"<attachment><link>{link}</link><location>{_text(place_m)}</location></attachment>"
-
-
-def _text(values: Iterable[float]) -> str:
-    """Return numbers with all their digits; 0.0 makes a plain zero of −0."""
-    return " ".join(repr(float(value) + 0.0) for value in values)
+    return f"<attachment><link>{link}</link><location>{numbers(*place_m)}</location></attachment>"

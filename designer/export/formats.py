@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from designer.export.caspr import to_caspr
 from designer.export.moordyn import to_moordyn
+from designer.export.mujoco import to_mujoco
 from designer.export.robot import Export, ExportedRobot
 from designer.export.workshop import to_csv
 
@@ -34,5 +35,6 @@ class Format:
 FORMATS = {
     "caspr": Format(to_caspr, "_bodies.xml", needs_cables=False),
     "moordyn": Format(to_moordyn, ".txt"),
+    "mujoco": Format(to_mujoco, ".xml"),
     "csv": Format(to_csv, ".csv", needs_ropes=True),
 }

@@ -14,7 +14,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.errors import InputError
-from designer.export.robot import Export, ExportedRobot, inertia_of, levelled, lost_by_all
+from designer.export.robot import Export, ExportedRobot, inertia_of, levelled, lost_by_all, numbers
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.robot import Robot
 from designer.statics.inverse import Statics
@@ -87,7 +87,7 @@ def _lost(robot: Robot, load: _Load, down_m: float) -> list[str]:
     body, lost = robot.platform, ["the worst pose; this is the reference pose alone"]
     if not load.is_whole:
         lost.append(
-            "the wrench on the platform: MoorDyn takes no more than a vertical force at its origin, so "
+            "the wrench on the platform, as MoorDyn takes a vertical force at its origin alone: "
             "the platform is coupled, which keeps it in this pose"
         )
     elif body.wrench_N.any():
@@ -118,7 +118,7 @@ def _options(points_m: FloatArray) -> Iterator[str]:
     yield _section("OPTIONS")
     yield f"{STANDARD_GRAVITY_M_PER_S2} g gravity (m/s^2)"
     yield "0 rho density of water (kg/m^3): none, this stands in air"
-    yield f"{_text(max(-low, 0.0) + 2.0 * size)} WtrDpth seabed below everything (m)"
+    yield f"{numbers(max(-low, 0.0) + 2.0 * size)} WtrDpth seabed below everything (m)"
     yield "0.0002 dtM time step (s)"
     yield _section("END OF THE OPTIONS, WHICH MOORPY NEEDS FIRST")
 
@@ -136,7 +136,7 @@ def _types(exported: ExportedRobot, statics: Statics) -> Iterator[str]:
     each = [cable] * len(mass) if isinstance(cable, Cable) else cable.each
     for k, figures in enumerate(zip(each, mass, stiffness, strict=True), start=1):
         rope, mass_kg_per_m, stiffness_N = figures
-        values = _text(rope.diameter_m, mass_kg_per_m, stiffness_N, -DAMPING_RATIO)
+        values = numbers(rope.diameter_m, mass_kg_per_m, stiffness_N, -DAMPING_RATIO)
         yield f"cable{k} {values} 0 0 0 0 0"
 
 
@@ -147,9 +147,9 @@ def _bodies(robot: Robot, load: _Load, place_m: FloatArray, rotation: FloatArray
     yield "ID Attachment X0 Y0 Z0 r0 p0 y0 Mass CG* I* Volume CdA* Ca*"
     yield "(#) (word) (m) (m) (m) (deg) (deg) (deg) (kg) (m) (kg-m^2) (m^3) (m^2) (-)"
     inertia = np.diag(rotation @ inertia_of(robot.platform) @ rotation.T)
-    centre, moments = ("|".join(_text(x) for x in row) for row in (load.centre_m, inertia))
-    place = f"{_text(*place_m)} 0 0 0"
-    yield f"1 {_held(load)} {place} {_text(load.mass_kg)} {centre} {moments} 0 0 0"
+    centre, moments = ("|".join(numbers(x) for x in row) for row in (load.centre_m, inertia))
+    place = f"{numbers(*place_m)} 0 0 0"
+    yield f"1 {_held(load)} {place} {numbers(load.mass_kg)} {centre} {moments} 0 0 0"
 
 
 def _held(load: _Load) -> str:
@@ -168,7 +168,7 @@ def _points(
     else:
         rows += [("Body1", attachment_m, 0.0) for attachment_m in attachments_m]
     for number, (held, point_m, mass_kg) in enumerate(rows, start=1):
-        yield f"{number} {held} {_text(*point_m, mass_kg)} 0 0 0"
+        yield f"{number} {held} {numbers(*point_m, mass_kg)} 0 0 0"
 
 
 def _lines(statics: Statics) -> Iterator[str]:
@@ -178,8 +178,4 @@ def _lines(statics: Statics) -> Iterator[str]:
     yield "(#) (name) (ID) (ID) (m) (-) (-)"
     for k, length_m in enumerate(statics.free_length_m, start=1):
         end = count + (1 if is_point_mass else k)
-        yield f"{k} cable{k} {k} {end} {_text(length_m)} {SEGMENTS} -"
-
-
-def _text(*values: float) -> str:
-    return " ".join(repr(float(value) + 0.0) for value in values)
+        yield f"{k} cable{k} {k} {end} {numbers(length_m)} {SEGMENTS} -"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -185,6 +185,18 @@ def _lost_of(workspace: Workspace) -> list[str]:
     if workspace.region.is_discrete:
         lost.append("the listed poses or the path of the workspace, with its times")
     return lost
+
+
+def numbers(*values: float) -> str:
+    """Return numbers with all their digits; 0.0 makes a plain zero of −0."""
+    return " ".join(repr(float(value) + 0.0) for value in values)
+
+
+def xml_document(heading: Iterable[str], lines: Iterable[str]) -> bytes:
+    """Return an XML file with a comment at its head."""
+    comment = [line.replace("--", "- -") for line in heading]
+    first = ['<?xml version="1.0" encoding="utf-8"?>', "<!--", *comment, "-->"]
+    return ("\n".join([*first, *lines]) + "\n").encode()
 
 
 def inertia_of(body: Platform) -> FloatArray:
