@@ -334,6 +334,10 @@ def _reactions(text, ropes, analysis: Analysis) -> Iterator[str]:
 def _life(text, ropes, analysis: Analysis, one: Requirement) -> Iterator[str]:
     """Walk along a rope and count what bends each place of it, over the sheave alone."""
     loaded, life = one.loaded, text["selection"]["rope_life"]
+    if text["selection"]["grades"] == ["pairs-fibre"]:
+        if one.state.value != "open":
+            yield f"rope life of a fibre rope is {one.state.value}"
+        return
     winches = text["robot"].get("winches", {})
     if "positions" in winches and "drum_diameter" in winches:  # then drums bend it as well
         return

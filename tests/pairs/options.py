@@ -552,7 +552,17 @@ OPTIONS: tuple[Option, ...] = (
     Option("poses", "list of poses", ALL, _poses("poses")),
     Option("poses_of_case", "list of poses, some for a load case", ALL, _poses("poses-of-case")),
     Option("path", "path with inertia", ALL, _path),
-    Option("rope_life", "life of the rope along a path", ALL, _life),
+    Option(
+        "rope_life",
+        "life of the rope along a path",
+        ALL,
+        _life,
+        not_covered=lambda text: (
+            "the constants of a rope's life are of steel wire ropes"
+            if text["selection"]["grades"] == ["pairs-fibre"]
+            else ""
+        ),
+    ),
     Option(
         "lengths",
         "`designer lengths`",
