@@ -16,6 +16,7 @@ from designer.model.space import named_place
 from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult, governing
+from designer.selection.criteria import rope_diameter_m
 from designer.statics.inverse import MasslessStatics, Statics, solve_massless, solve_sagging
 from designer.statics.shape import sag_m, stretch_m, string_frequency_Hz
 
@@ -47,6 +48,10 @@ class CableThere:
         Lowest one of a string of its mean end tension T, sqrt(T / m) / (2 l), with ice [Hz].
     pull_N : array (3,)
         On the platform, world frame [N].
+    drum_tension_N : float
+        Behind the sheaves between exit point and drum, as the winch pulls [N].
+    motor_torque_Nm : float or None
+        As it holds that or slowly pulls; None where the study has no motor [N·m].
     """
 
     cable: int
@@ -59,6 +64,8 @@ class CableThere:
     safety_factor: float
     frequency_Hz: float
     pull_N: FloatArray
+    drum_tension_N: float
+    motor_torque_Nm: float | None
 
 
 def _named_case(case: CaseResult) -> dict[str, Any]:
@@ -129,6 +136,11 @@ def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | N
     tension = statics.cable_tension_N[0]
     ends = statics.exit_tension_N[0], statics.platform_tension_N[0]
     frequency = string_frequency_Hz(case.loaded, statics)[0]
+    winches, exit_N = statics.robot.winches, statics.exit_tension_N[0]
+    torque_Nm: list[float | None] = [None] * len(exit_N)
+    if winches.motor_torque_Nm is not None:
+        rope_m = rope_diameter_m(case.loaded.cable)
+        torque_Nm = winches.torque_Nm(exit_N, rope_m).tolist()
     rows = zip(
         case.cables.tolist(),
         statics.length_m[0].tolist(),
@@ -139,6 +151,8 @@ def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | N
         (strength_N / tension).tolist(),
         frequency.tolist(),
         pulls,
+        winches.drum_tension_N(exit_N).tolist(),
+        torque_Nm,
         strict=True,
     )
     cables = tuple(CableThere(*row) for row in rows)

@@ -152,3 +152,19 @@ def test_pages_say_where_the_rope_bears_most(tmp_path: Path) -> None:
     assert "No loss assumed" not in answer
     assert "of a cable that rises from there this is on the safe side" in assumptions
     assert "1/0.93 of what is counted" in reactions
+
+
+def test_drum_and_motor_of_each_cable_at_the_governing_pose(tmp_path: Path) -> None:
+    analysis = crane(tmp_path, LOSSES | DRIVEN | {"motor": {"torque": 50.0}})
+    told = analysis.to_dict()["governing"]["cables"]
+    (size,) = {rope.size.diameter_m for rope in analysis.assignment.by_cable}
+    for cable in told:
+        at_drum = cable["exit_tension_N"] / BEHIND
+        assert cable["drum_tension_N"] == pytest.approx(at_drum, rel=1e-12)
+        arm = 0.15 + 1.5 * size
+        assert cable["motor_torque_Nm"] == pytest.approx(at_drum * arm / 20.0 / 0.8, rel=1e-12)
+    page = " ".join(rendered(section(Drawings(analysis), "checks")).body.split())
+    assert "At the drum" in page
+    assert "torque of the motor" in page
+    without = crane(tmp_path, {}).to_dict()["governing"]["cables"]
+    assert {cable["motor_torque_Nm"] for cable in without} == {None}
