@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
 from designer.arrays import FloatArray, VerdictArray, require_shape
 from designer.kernel import answer
 from designer.kernel.branches import rate_range
-from designer.kernel.calling import CableFigures, Situation, plain, share_out, share_out_runs
+from designer.kernel.calling import CableFigures, Situation, plain, share_out
 from designer.kernel.cone import refuse_range
 from designer.kernel.least_pull import least_pulls
 from designer.kernel.redundant import solve_massless_range, solve_redundant_range
@@ -83,7 +81,6 @@ def solve_batch(
         With at least as many cables as degrees of freedom, and its poses.
     kappa_per_m, relative_weights, strength_m : array (n_cables,) or (n_poses, n_cables)
         Weight over axial stiffness [1/m], weight relative to w, allowable tension over weight [m].
-        Poses with the same cables are solved fastest where they follow one another.
     inverse_weight_m_per_N : float, array (n_poses,) or None
         1 / w, zero for the infinite section; None sizes each pose for the lightest cable that the
         strength allows.
@@ -109,40 +106,31 @@ def solve_batch(
     ):
         require_shape(name, values, *([count] if values.ndim == 2 else []), n)
     sizing = inverse_weight_m_per_N is None
-    inverse_weight = np.asarray(-1.0 if inverse_weight_m_per_N is None else inverse_weight_m_per_N)
+    inverse_weight = np.array(-1.0 if inverse_weight_m_per_N is None else inverse_weight_m_per_N)
     least_N = robot.tension_min_N if robot.is_redundant else 0.0
+    rows = map(np.atleast_2d, (kappa_per_m, relative_weights, strength_m))
+    kappa, weights, strength = map(plain, np.broadcast_arrays(*rows))
     pulls = least_pulls(sag_max if robot.is_redundant else None)
-    runs = [
-        (
-            *span,
-            CableFigures(plain(kappa), plain(weights), plain(strength), least_N, pulls),
-            float(goal[0]),
-        )
-        for span, (kappa, weights, strength, goal) in _runs(
-            count, kappa_per_m, relative_weights, strength_m, inverse_weight[..., None]
-        )
-    ]
+    figures = CableFigures(kappa, weights, strength, least_N, pulls)
     out = answer.Answers(
         np.empty((count, n, 3)), np.empty((count, 5)), np.empty(count, dtype=np.int8)
     )
-    solves = [(*span, situation, figures, goal, out) for *span, figures, goal in runs]
+    asked = situation, figures, plain(inverse_weight.reshape(-1)), out
     if robot.is_redundant:
-        share_out_runs(solve_redundant_range, _SLOW_SHARE, solves)
+        share_out(solve_redundant_range, count, _SLOW_SHARE, *asked)
     else:
-        share_out_runs(solve_range, _SHARE, solves)
+        share_out(solve_range, count, _SHARE, *asked)
     potential = np.zeros(count)
     if (inverse_weight != 0.0).all():  # at infinite section nothing is chosen
         if is_thorough:
             if robot.has_one_branch and sizing:
-                proofs = [(*span, situation, figures, out) for *span, figures, _ in runs]
-                share_out_runs(prove_range, _SHARE, proofs)
+                share_out(prove_range, count, _SHARE, situation, figures, out)
             # Where all is proved, the search need not even be compiled.
-            is_open = out.verdict != answer.NO_FINITE_CABLE
-            solves = [run for run in solves if is_open[run[0] : run[1]].any()]
-            share_out_runs(search_range, _SEARCH_SHARE, solves)
+            if (out.verdict != answer.NO_FINITE_CABLE).any():
+                share_out(search_range, count, _SEARCH_SHARE, *asked)
         if rates_branches and not robot.has_one_branch:
-            rated = [(*s, situation, figures, sizing, out, potential) for *s, figures, _ in runs]
-            share_out_runs(rate_range, _SLOW_SHARE, rated)
+            rated = situation, figures, sizing, out, potential
+            share_out(rate_range, count, _SLOW_SHARE, *rated)
     if np.any(relative_weights != 1.0):  # the kernel's forces are those of cables of weight w
         out.cables[..., [answer.FORCE_X, answer.FORCE_Z]] *= relative_weights[..., None]
     return Solution(
@@ -157,20 +145,6 @@ def solve_batch(
         massless_tension_N=out.poses[:, answer.MASSLESS_TENSION],
         potential=potential,
     )
-
-
-def _runs(count: int, *figures: FloatArray) -> Iterator[tuple[tuple[int, int], list[FloatArray]]]:
-    """Yield the first and last of each run of poses with the same figures, and these.
-
-    ``figures`` have a row each (n_poses, n), or one for all poses (n,).
-    """
-    differs = np.zeros(max(count - 1, 0), dtype=np.bool_)
-    for values in figures:
-        if values.ndim == 2:
-            differs |= (values[1:] != values[:-1]).any(axis=1)
-    edges = [0, *(np.flatnonzero(differs) + 1).tolist(), count] if count else []
-    for first, last in pairwise(edges):
-        yield (first, last), [values[first] if values.ndim == 2 else values for values in figures]
 
 
 def solve_massless_batch(
@@ -228,5 +202,5 @@ def refuse_batch(
 
 def _straight(n_cables: int, least_tension_N: float) -> CableFigures:
     """Return straight cables, of which strength and weight say nothing."""
-    ones = plain(np.ones(n_cables))
+    ones = plain(np.ones((1, n_cables)))
     return CableFigures(ones, ones, ones, least_tension_N)

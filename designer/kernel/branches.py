@@ -28,9 +28,7 @@ from designer.kernel.pose import (
     FORCE,
     LEAST,
     LOWEST,
-    SHARE,
     SIZE,
-    STRENGTH,
     UNIT,
     WRENCH,
     Pose,
@@ -43,7 +41,7 @@ from designer.kernel.pose import (
     smallest_pull,
     write_wrenches,
 )
-from designer.kernel.table import CHORD, LIFT, T_P, V_P, X2, D, L, P, T, V
+from designer.kernel.table import CHORD, LIFT, SHARE, STRENGTH, T_P, V_P, X2, D, L, P, T, V
 
 _AT_LIMIT = 1e-6
 """Relative distance from a limit at which a cable counts as at it."""
@@ -71,14 +69,14 @@ def rate_range(
     Relative to the inverse weight when sizing, else to the load factor; infinite where the
     multipliers are not to be had.
     """
-    m, n = situation.rows.size, figures.kappa.size
-    pose = new_pose(figures, situation.rows)
+    m, n = situation.rows.size, situation.attachments.shape[0]
+    pose = new_pose(situation, figures)
     scratch = new_scratch(m, n)
     for at in range(start, stop):
         out[at] = 0.0
         if answers.verdict[at] != SOLVED:
             continue
-        place(pose, situation, at)
+        place(pose, situation, figures, at)
         limit_sag(pose)
         c, w = pose.cables, answers.poses[at, WEIGHT]
         for i in range(n):

@@ -6,7 +6,7 @@ Importing this imports no Numba.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from typing import Any, NamedTuple
@@ -52,11 +52,11 @@ class Situation(NamedTuple):
 
 
 class CableFigures(NamedTuple):
-    """What is the same of the cables in all poses.
+    """The cables of the poses.
 
     Parameters
     ----------
-    kappa, weights, strength : array (n_cables,)
+    kappa, weights, strength : array (1 or n_poses, n_cables)
         Weight over axial stiffness [1/m], weight relative to w (or, where there is no common w,
         weight per length [N/m]), allowable tension over weight [m].
     least_tension : float
@@ -153,16 +153,7 @@ def share_out(solve: Callable[..., None], count: int, share: int, *arguments: An
 
     Each call gets as many as a ``share``.
     """
-    share_out_runs(solve, share, [(0, count, *arguments)])
-
-
-def share_out_runs(solve: Callable[..., None], share: int, runs: Iterable[tuple[Any, ...]]) -> None:
-    """Do the same for several runs, each with its own arguments: ``(first, last, …)``."""
-    calls = [
-        (at, min(at + share, last), *arguments)
-        for first, last, *arguments in runs
-        for at in range(first, last, share)
-    ]
+    calls = [(at, min(at + share, count), *arguments) for at in range(0, count, share)]
     if len(calls) == 1:
         solve(*calls[0])
     else:

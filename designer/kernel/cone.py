@@ -117,11 +117,11 @@ def refuse_range(
     both of unit length, moments over the reach of the attachments. Not found: the cone of straight
     cables alone does not hold the load. Not converged: nothing is proved.
     """
-    n = figures.kappa.size
-    pose = new_pose(figures, situation.rows)
+    n = situation.attachments.shape[0]
+    pose = new_pose(situation, figures)
     cone = new_cone(situation.rows.size, n)
     for at in range(start, stop):
-        place(pose, situation, at)
+        place(pose, situation, figures, at)
         out_verdict[at] = NOT_CONVERGED
         out_separation[at] = np.nan
         out_wrench[at] = np.nan

@@ -38,9 +38,7 @@ from designer.kernel.pose import (
     MU_ROOM,
     RHS,
     ROOM,
-    SHARE,
     STEP,
-    STRENGTH,
     T_PP,
     UNIT,
     V_PP,
@@ -54,7 +52,7 @@ from designer.kernel.pose import (
     smallest_pull,
     write_wrenches,
 )
-from designer.kernel.table import CHORD, LIFT, STRAIGHT, T_P, V_P, P, T, V
+from designer.kernel.table import CHORD, LIFT, SHARE, STRAIGHT, STRENGTH, T_P, V_P, P, T, V
 
 START_OF_STRAIGHT = 0.8
 """Of what straight cables reach, to begin with: sag takes its part."""

@@ -34,10 +34,25 @@ from designer.kernel.lanes import (
     lanes_of,
     linearise,
     place,
+    put_cables,
     write_lane,
 )
 from designer.kernel.linear import solve_lanes
-from designer.kernel.table import CHORD, L_0, L_P, LANE_ROWS, LANES, V_P, X2, L, P, T, V
+from designer.kernel.table import (
+    CHORD,
+    KAPPA,
+    L_0,
+    L_P,
+    LANE_ROWS,
+    LANES,
+    SHARE,
+    V_P,
+    X2,
+    L,
+    P,
+    T,
+    V,
+)
 
 # Rows of a cable beside those of the table: gradient and curvature of the sum.
 _GRADIENT, _CURVATURE = LANE_ROWS, LANE_ROWS + 1
@@ -88,8 +103,8 @@ def solve_internal_poses(
     out_rest : array (n_poses,)
         Filled with what is left of the balance, over the largest tension.
     """
-    weights, kappa, rows = figures.weights, figures.kappa, situation.rows
-    count, n, m = situation.positions.shape[0], kappa.size, rows.size
+    rows = situation.rows
+    count, n, m = situation.positions.shape[0], situation.attachments.shape[0], rows.size
     cables = np.empty((n, LANE_ROWS + 2, LANES))
     slopes = np.zeros((n + 1, n + 2, LANES))
     normal = np.empty((m + 1, m + 1, LANES))
@@ -98,18 +113,19 @@ def solve_internal_poses(
     for first in range(0, count, LANES):
         lane = lanes_of(every, first)
         place(cables, poses, situation, lane)
+        put_cables(cables, figures, lane)
         poses[C] = 0.0
         for i in range(n):  # straight cables that pull so
             row = cables[i]
             for j in range(LANES):
                 p, chord = start[lane[j], i], row[CHORD, j]
                 row[P, j] = p
-                row[L, j] = chord / (1.0 + kappa[i] * p * chord)
+                row[L, j] = chord / (1.0 + row[KAPPA, j] * p * chord)
         for turn in range(_MOST_TURNS):
-            linearise(cables, kappa)
-            assemble(slopes, cables, poses, weights, rows)
+            linearise(cables)
+            assemble(slopes, cables, poses, rows)
             for i in range(n):
-                _judge(cables[i], read, noise, pull, weights[i], spread, lane, i)
+                _judge(cables[i], read, noise, pull, spread, lane, i)
                 cables[i, _CURVATURE] *= 1.0 + turn // _PATIENCE
                 if turn >= _MOST_TURNS - _LAST_TURNS:
                     cables[i, _GRADIENT] = 0.0
@@ -120,11 +136,11 @@ def solve_internal_poses(
             advance(cables, slopes, poses)
             if np.max(poses[STEP]) < _SMALL_STEP:
                 break
-        linearise(cables, kappa)
-        assemble(slopes, cables, poses, weights, rows)
+        linearise(cables)
+        assemble(slopes, cables, poses, rows)
         for j in range(min(LANES, count - first)):
-            write_lane(out[lane[j]], cables, weights, j)
-            out_rest[lane[j]] = _rest(slopes, cables, weights, scale, j)
+            write_lane(out[lane[j]], cables, j)
+            out_rest[lane[j]] = _rest(slopes, cables, scale, j)
 
 
 @inner
@@ -133,14 +149,13 @@ def _judge(
     read: FloatArray,
     noise: FloatArray,
     pull: FloatArray,
-    w: float,
     spread: float,
     lane: IntArray,
     i: int,
 ) -> None:
     """Set gradient and curvature in p of what is to be small."""
     for j in range(LANES):
-        at = lane[j]
+        at, w = lane[j], row[SHARE, j]
         p, length, slope = row[P, j], row[L, j] + row[L_0, j], row[L_P, j]
         upward, upward_p = row[V, j] + length, row[V_P, j] + slope
         tension = w * np.sqrt(p * p * row[X2, j] + upward * upward)
@@ -203,15 +218,13 @@ def _set_step(slopes: FloatArray, normal: FloatArray, cables: FloatArray, m: int
 
 
 @kernel
-def _rest(
-    slopes: FloatArray, cables: FloatArray, weights: FloatArray, scale: FloatArray, j: int
-) -> float:
+def _rest(slopes: FloatArray, cables: FloatArray, scale: FloatArray, j: int) -> float:
     """Return what is left of a balance; cables close to rounding after `linearise`."""
     n = cables.shape[0]
     largest, rest = 0.0, 0.0
     for r in range(scale.size):
         rest = max(rest, abs(slopes[r, n, j] + slopes[r, n + 1, j]) * scale[r])
     for i in range(n):  # a cable that does not close, and NaN, must show
-        largest = max(largest, weights[i] * cables[i, T, j])
+        largest = max(largest, cables[i, SHARE, j] * cables[i, T, j])
         rest += 0.0 if abs(cables[i, L_0, j]) <= _CLOSED * cables[i, L, j] else np.inf
     return rest / largest

@@ -9,7 +9,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import FORCE_X, FORCE_Z, LENGTH
-from designer.kernel.calling import Situation
+from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import inner, kernel
 from designer.kernel.linear import copy
 from designer.kernel.table import (
@@ -18,7 +18,9 @@ from designer.kernel.table import (
     LANES,
     LEVEL,
     LIFT,
+    SHARE,
     STRAIGHT,
+    STRENGTH,
     T_P,
     V_P,
     X2,
@@ -29,6 +31,7 @@ from designer.kernel.table import (
     condense,
     load_of,
     place_cable,
+    put_cable,
     straighten,
 )
 
@@ -72,19 +75,25 @@ def place(cables: FloatArray, poses: FloatArray, situation: Situation, lane: Int
             poses[LOAD + axis, j] = load[axis]
 
 
+@inner
+def put_cables(cables: FloatArray, figures: CableFigures, lane: IntArray) -> None:
+    """Fill the figures of the cables of one block."""
+    for i in range(cables.shape[0]):
+        for j in range(LANES):
+            put_cable(cables[i], j, figures, lane[j], i)
+
+
 @kernel
-def linearise(cables: FloatArray, kappa: FloatArray) -> None:
+def linearise(cables: FloatArray) -> None:
     """Condense each cable's length: pull and top tension as linear functions of the step in p."""
     for i in range(cables.shape[0]):
-        row, k = cables[i], kappa[i]
+        row = cables[i]
         for j in range(LANES):
-            condense(row, j, k)
+            condense(row, j)
 
 
 @inner
-def assemble(
-    A: FloatArray, cables: FloatArray, poses: FloatArray, weights: FloatArray, rows: IntArray
-) -> None:
+def assemble(A: FloatArray, cables: FloatArray, poses: FloatArray, rows: IntArray) -> None:
     """Write the linearised balance: columns dp, then minus the present wrench, then the load.
 
     `rows` are the components of the wrench that are balanced, of 0 … 5; with more cables than those
@@ -97,21 +106,20 @@ def assemble(
         rest[:] = 0.0
         copy(poses[LOAD + rows[m]], A[m, n + 1])
         for i in range(n):
-            row, w, slope = cables[i], weights[i], A[m, i]
+            row, slope = cables[i], A[m, i]
             if is_level:  # nothing to lift: the same, but quicker
                 for j in range(LANES):
-                    slope[j] = w * row[level, j]
+                    slope[j] = row[SHARE, j] * row[level, j]
                     rest[j] -= slope[j] * row[P, j]
                 continue
             for j in range(LANES):
-                slope[j] = w * (row[level, j] + row[lift, j] * row[V_P, j])
-                rest[j] -= w * (row[level, j] * row[P, j] + row[lift, j] * row[V, j])
+                w, across, up = row[SHARE, j], row[level, j], row[lift, j]
+                slope[j] = w * (across + up * row[V_P, j])
+                rest[j] -= w * (across * row[P, j] + up * row[V, j])
 
 
 @inner
-def aim_at_strength(
-    poses: FloatArray, A: FloatArray, cables: FloatArray, strength: FloatArray
-) -> None:
+def aim_at_strength(poses: FloatArray, A: FloatArray, cables: FloatArray) -> None:
     """Set as goal the largest c that no linearised top tension forbids."""
     poses[GOAL] = np.inf
     n = cables.shape[0]
@@ -119,7 +127,7 @@ def aim_at_strength(
         row = cables[i]
         for j in range(LANES):
             slope = row[T_P, j] * A[i, n + 1, j]
-            room = strength[i] - row[T, j] - row[T_P, j] * A[i, n, j]
+            room = row[STRENGTH, j] - row[T, j] - row[T_P, j] * A[i, n, j]
             bound = room / slope if slope > 0.0 else np.inf
             poses[GOAL, j] = min(poses[GOAL, j], bound)
 
@@ -153,7 +161,7 @@ def advance(cables: FloatArray, A: FloatArray, poses: FloatArray) -> None:
 
 
 @inner
-def first_guess(cables: FloatArray, A: FloatArray, poses: FloatArray, weights: FloatArray) -> None:
+def first_guess(cables: FloatArray, A: FloatArray, poses: FloatArray) -> None:
     """Set p from the straight-cable balance, kept positive: a slack cable hangs, never pushes."""
     n = cables.shape[0]
     for i in range(n):
@@ -161,7 +169,7 @@ def first_guess(cables: FloatArray, A: FloatArray, poses: FloatArray, weights: F
         for j in range(LANES):
             p = A[i, n, j] + poses[C, j] * A[i, n + 1, j]
             row[P, j] = p if p > _LEAST_START else _LEAST_START
-            row[STRAIGHT, j] = weights[i] * A[i, n + 1, j] * row[L, j]
+            row[STRAIGHT, j] = row[SHARE, j] * A[i, n + 1, j] * row[L, j]
 
 
 @inner
@@ -179,13 +187,14 @@ def normal_equations(normal: FloatArray, A: FloatArray, m: int, right: int) -> N
 
 
 @inner
-def write_lane(out: FloatArray, cables: FloatArray, weights: FloatArray, j: int) -> None:
+def write_lane(out: FloatArray, cables: FloatArray, j: int) -> None:
     """Write unstrained length [m] and forces at the platform [N] of a pose, (n_cables, 3).
 
     After `linearise`, whose change of length closes the cables to rounding.
     """
     for i in range(cables.shape[0]):
-        row, w = cables[i], weights[i]
+        row = cables[i]
+        w = row[SHARE, j]
         out[i, LENGTH] = row[L, j] + row[L_0, j]
         out[i, FORCE_X] = w * row[P, j] * np.sqrt(row[X2, j])
         out[i, FORCE_Z] = -w * row[V, j]

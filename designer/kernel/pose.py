@@ -26,13 +26,16 @@ from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.least_pull import least_pull
 from designer.kernel.table import (
     CHORD,
+    KAPPA,
     L_0,
     L_P,
     LANE_ROWS,
     LEVEL,
     LEVER,
     LIFT,
+    SHARE,
     STRAIGHT,
+    STRENGTH,
     T_P,
     V_P,
     X2,
@@ -44,15 +47,15 @@ from designer.kernel.table import (
     condense,
     load_of,
     place_cable,
+    put_cable,
     straighten,
 )
 from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
 
-# Rows beside those of the table. The same for all poses: weight over stiffness, weight relative to
-# w, allowable tension over weight, least tension asked for over relative weight. Then the pull of a
-# straight cable at its strength, the unit in which pulls are measured, and the least pull for the
+# Rows beside those of the table: least tension asked for over relative weight; the pull of a
+# straight cable at its strength, the unit in which pulls are measured; and the least pull for the
 # sag that is allowed.
-KAPPA, SHARE, STRENGTH, LEAST, UNIT, FLOOR = range(LANE_ROWS, LANE_ROWS + 6)
+LEAST, UNIT, FLOOR = range(LANE_ROWS, LANE_ROWS + 3)
 # Second slopes of pull and top tension; least tension anywhere in the cable over its weight, with
 # its slopes, where one is asked for; 1 where that sets the smallest pull, 0 where the sag does; 1
 # for a cable left to hang, 0 for one that is pulled.
@@ -118,27 +121,25 @@ class Ask(NamedTuple):
 
 
 @inner
-def new_pose(figures: CableFigures, rows: IntArray) -> Pose:
-    """Return the arrays of a pose, filled with what is the same for all poses."""
-    cables = np.zeros((_ROWS, figures.kappa.size))
-    scale = np.ones(3)
-    scale[FORCE] = 0.0
-    for i in range(figures.kappa.size):
-        weight, strength = figures.weights[i], figures.strength[i]
-        cables[KAPPA, i], cables[SHARE, i] = figures.kappa[i], weight
-        cables[STRENGTH, i], cables[LEAST, i] = strength, figures.least_tension / weight
-        scale[FORCE] = max(scale[FORCE], weight * strength)
-    return Pose(cables, rows, np.zeros(6), np.zeros(6), scale, figures.least_pulls)
+def new_pose(situation: Situation, figures: CableFigures) -> Pose:
+    """Return the arrays of a pose."""
+    cables = np.zeros((_ROWS, situation.attachments.shape[0]))
+    least_pulls = figures.least_pulls
+    return Pose(cables, situation.rows, np.zeros(6), np.zeros(6), np.ones(3), least_pulls)
 
 
 @kernel
-def place(pose: Pose, situation: Situation, at: int) -> None:
-    """Fill geometry and load."""
+def place(pose: Pose, situation: Situation, figures: CableFigures, at: int) -> None:
+    """Fill cables, geometry and load."""
     c, load, scale = pose.cables, pose.load, pose.scale
     reach, size = 0.0, 1e-300
     c[HANGS], c[FLOOR] = 0.0, 0.0
+    scale[FORCE] = 0.0
     for i in range(c.shape[1]):
+        put_cable(c, i, figures, at, i)
         place_cable(c, i, situation, at, i)
+        c[LEAST, i] = figures.least_tension / c[SHARE, i]
+        scale[FORCE] = max(scale[FORCE], c[SHARE, i] * c[STRENGTH, i])
         c[UNIT, i] = c[STRENGTH, i] / c[CHORD, i]
         reach = max(reach, c[LEVER, i])
     scale[REACH] = reach = reach if reach > 0.0 else 1.0
@@ -197,7 +198,7 @@ def linearise(pose: Pose) -> None:
     """Condense each cable's length: pull and top tension as linear functions of the step in p."""
     c = pose.cables
     for i in range(c.shape[1]):
-        condense(c, i, c[KAPPA, i])
+        condense(c, i)
         if c[LEAST, i] > 0.0:
             c[LOWEST, i], c[LOWEST_P, i] = _lowest_tension(
                 c, i, c[P, i], c[L, i] + c[L_0, i], c[L_P, i], c[V, i], c[V_P, i]

@@ -36,14 +36,11 @@ from designer.kernel.pose import (
     FLOOR,
     FORCE,
     HANGS,
-    KAPPA,
     LEAST,
     NOTHING,
     OPTIMAL_WITHIN,
     REACH,
-    SHARE,
     SIZE,
-    STRENGTH,
     TOP,
     TOP_S,
     UNIT,
@@ -75,10 +72,13 @@ from designer.kernel.simplex import (
 )
 from designer.kernel.table import (
     CHORD,
+    KAPPA,
     L_0,
     L_P,
     LIFT,
+    SHARE,
     STRAIGHT,
+    STRENGTH,
     T_P,
     V_P,
     X2,
@@ -110,17 +110,17 @@ def solve_redundant_range(
     stop: int,
     situation: Situation,
     figures: CableFigures,
-    inverse_weight: float,
+    inverse_weight: FloatArray,
     out: Answers,
 ) -> None:
     """Solve the poses from `start` to `stop`: by linear programmes, else by the interior point."""
-    m, n = situation.rows.size, figures.kappa.size
-    pose = new_pose(figures, situation.rows)
+    m, n = situation.rows.size, situation.attachments.shape[0]
+    pose = new_pose(situation, figures)
     lp = new_programme(m, n)
     scratch = new_scratch(m, n)
-    sizing = inverse_weight < 0.0
+    sizing = inverse_weight[0] < 0.0
     for at in range(start, stop):
-        place(pose, situation, at)
+        place(pose, situation, figures, at)
         straight_c, spans = massless(pose, lp)
         if not spans:
             out.cables[at] = np.nan
@@ -129,7 +129,7 @@ def solve_redundant_range(
             continue
         limit_sag(pose)
         to_scaled = pose.scale[SIZE] / pose.scale[FORCE]
-        ask = asked(pose, inverse_weight)
+        ask = asked(pose, inverse_weight[at if inverse_weight.size > 1 else 0])
         s, gap = _walk(pose, lp, ask, scratch)
         verdict = NOT_CONVERGED
         if gap <= OPTIMAL_WITHIN:
@@ -161,12 +161,12 @@ def solve_massless_range(
     with the load.
     """
     rows, least_tension = situation.rows, figures.least_tension
-    m, n = rows.size, figures.kappa.size
-    pose = new_pose(figures, rows)
+    m, n = rows.size, situation.attachments.shape[0]
+    pose = new_pose(situation, figures)
     lp = new_programme(m, n)
     scratch = new_scratch(m, n)
     for at in range(start, stop):
-        place(pose, situation, at)
+        place(pose, situation, figures, at)
         c, spans = massless(pose, lp)
         held = c > NOTHING
         for i in range(n):

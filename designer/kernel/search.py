@@ -32,11 +32,8 @@ from designer.kernel.interior import START_OF_STRAIGHT, climb, new_scratch, pull
 from designer.kernel.linear import copy, solve_small
 from designer.kernel.pose import (
     FORCE,
-    KAPPA,
     OPTIMAL_WITHIN,
-    SHARE,
     SIZE,
-    STRENGTH,
     UNIT,
     Ask,
     Pose,
@@ -51,7 +48,7 @@ from designer.kernel.pose import (
 )
 from designer.kernel.redundant import KEPT_PULLS, massless
 from designer.kernel.simplex import new_programme
-from designer.kernel.table import CHORD, LEVEL, LIFT, STRAIGHT, X2, D, P
+from designer.kernel.table import CHORD, KAPPA, LEVEL, LIFT, SHARE, STRAIGHT, STRENGTH, X2, D, P
 from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
 
 _RANDOM_STARTS = 6
@@ -89,13 +86,13 @@ def prove_range(
     Of those that are to be sized, and have no answer: what `search_range` would say, compiled in a
     fifth of the time.
     """
-    n = figures.kappa.size
-    pose = new_pose(figures, situation.rows)
+    n = situation.attachments.shape[0]
+    pose = new_pose(situation, figures)
     c, system, pull = pose.cables, np.empty((n, n + 1)), np.empty(n)
     for at in range(start, stop):
         if out.verdict[at] == SOLVED:
             continue
-        place(pose, situation, at)
+        place(pose, situation, figures, at)
         for k in range(n):
             row = pose.rows[k]
             system[k, n] = pose.load[row]
@@ -117,25 +114,25 @@ def search_range(
     stop: int,
     situation: Situation,
     figures: CableFigures,
-    inverse_weight: float,
+    inverse_weight: FloatArray,
     out: Answers,
 ) -> None:
     """Better the answers of the poses from `start` to `stop`; see `solve_redundant_range`."""
-    m, n = situation.rows.size, figures.kappa.size
-    pose = new_pose(figures, situation.rows)
+    m, n = situation.rows.size, situation.attachments.shape[0]
+    pose = new_pose(situation, figures)
     lp = new_programme(m, n)
     scratch = new_scratch(m, n)
     pulls, lifts = np.empty((n, _PARTS + 1)), np.empty((n, _PARTS + 1))
-    sizing = inverse_weight < 0.0
+    sizing = inverse_weight[0] < 0.0
     keep_cables, keep_pose = np.empty((n, 3)), np.empty(out.poses.shape[1])
     for at in range(start, stop):
-        place(pose, situation, at)
+        place(pose, situation, figures, at)
         straight_c, spans = massless(pose, lp)
         if not (spans and straight_c > 0.0):
             pose.cables[STRAIGHT] = np.nan
         limit_sag(pose)
         to_scaled = pose.scale[SIZE] / pose.scale[FORCE]
-        ask = asked(pose, inverse_weight)
+        ask = asked(pose, inverse_weight[at if inverse_weight.size > 1 else 0])
         best = -np.inf
         if out.verdict[at] == SOLVED:
             best = to_scaled / out.poses[at, WEIGHT] if sizing else -out.poses[at, LOAD_FACTOR]

@@ -14,7 +14,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import TOLERANCE
-from designer.kernel.calling import Meets, Situation
+from designer.kernel.calling import CableFigures, Meets, Situation
 from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.lanes import (
     OVERLOAD,
@@ -28,6 +28,7 @@ from designer.kernel.lanes import (
     lanes_of,
     linearise,
     place,
+    put_cables,
 )
 from designer.kernel.linear import copy, solve_lanes
 from designer.kernel.square import check, evaluate
@@ -45,9 +46,7 @@ def sweep_sizes(
     last: int,
     situation: Situation,
     inverse_weight: FloatArray,
-    kappa: FloatArray,
-    strength: FloatArray,
-    shares: FloatArray,
+    figures: CableFigures,
     cells: IntArray,
     leaves_out_hanging: bool,
     meets: Meets,
@@ -58,9 +57,8 @@ def sweep_sizes(
     ----------
     inverse_weight : array (n_sizes,)
         1 / w [m/N].
-    kappa, strength, shares : array (n_sizes, n_cables)
-        Weight over axial stiffness [1/m], allowable tension over weight [m], and weight relative to
-        w: the same on every winch but for what is attached to its cable.
+    figures : CableFigures
+        With a row for each size: the same on every winch but for what is attached to its cable.
     cells : array (n_poses,)
         Part of the region that each pose lies in.
     leaves_out_hanging : bool
@@ -75,29 +73,32 @@ def sweep_sizes(
     A = np.empty((n + 1, n + 2, LANES))
     poses = np.empty((POSE_ROWS, LANES))
     guess = np.empty((n, 2, LANES))
-    every = np.arange(count)
+    every, of_size = np.arange(count), np.empty(LANES, dtype=np.int64)
     for start in range(0, count, LANES):
         lane = lanes_of(every, start)
         place(cables, poses, situation, lane)
-        assemble(A, cables, poses, shares[first], rows)
+        of_size[:] = first
+        put_cables(cables, figures, of_size)
+        assemble(A, cables, poses, rows)
         solve_lanes(A, n, n + 2)
         for i in range(n):
             for right in range(2):
                 copy(A[i, n + right], guess[i, right])
         poses[C] = inverse_weight[first]
-        first_guess(cables, A, poses, shares[first])
+        first_guess(cables, A, poses)
         for size in range(first, last):
-            poses[C] = inverse_weight[size]
+            poses[C], of_size[:] = inverse_weight[size], size
+            put_cables(cables, figures, of_size)
             for _ in range(_ITERATIONS):  # Newton, from the state that the poses are in
-                linearise(cables, kappa[size])
-                assemble(A, cables, poses, shares[size], rows)
+                linearise(cables)
+                assemble(A, cables, poses, rows)
                 solve_lanes(A, n, n + 2)
                 poses[STEP] = 0.0
                 advance(cables, A, poses)
                 if np.max(poses[STEP]) < _SMALLEST_STEP:
                     break
-            evaluate(cables, kappa[size])
-            check(poses, cables, shares[size], strength[size], rows)
+            evaluate(cables)
+            check(poses, cables, rows)
             for j in range(min(LANES, count - start)):
                 at, cell, overload = lane[j], cells[lane[j]], poses[OVERLOAD, j]
                 # Negated, so that NaN counts as failed.

@@ -51,16 +51,20 @@ from designer.kernel.lanes import (
     lanes_of,
     linearise,
     place,
+    put_cables,
 )
 from designer.kernel.linear import solve_lanes
 from designer.kernel.table import (
+    KAPPA,
     L_0,
     LANE_ROWS,
     LANES,
     LEVEL,
     LEVER,
     LIFT,
+    SHARE,
     STRAIGHT,
+    STRENGTH,
     X2,
     D,
     L,
@@ -86,15 +90,15 @@ def solve_range(
     stop: int,
     situation: Situation,
     figures: CableFigures,
-    inverse_weight: float,
+    inverse_weight: FloatArray,
     out: Answers,
 ) -> None:
     """Solve the poses from `start` to `stop`: all quickly, then the failed ones again.
 
-    A negative `inverse_weight` asks for the largest instead.
+    A negative `inverse_weight` (1 or n_poses,) asks for the largest instead.
     """
-    n, rows = figures.kappa.size, situation.rows
-    sizing = inverse_weight < 0.0
+    n, rows = situation.attachments.shape[0], situation.rows
+    sizing = inverse_weight[0] < 0.0
     cables = np.empty((n, LANE_ROWS, LANES))
     A = np.empty((n + 1, n + 2, LANES))
     poses = np.empty((POSE_ROWS, LANES))
@@ -104,10 +108,12 @@ def solve_range(
         for first in range(0, pending.size, LANES):
             lane = lanes_of(pending, first)
             place(cables, poses, situation, lane)
-            poses[GOAL] = inverse_weight
-            _solve_block(cables, A, poses, figures, rows, sizing, iterations, step, lightness)
-            evaluate(cables, figures.kappa)
-            check(poses, cables, figures.weights, figures.strength, rows)
+            put_cables(cables, figures, lane)
+            for j in range(LANES):
+                poses[GOAL, j] = inverse_weight[lane[j] if inverse_weight.size > 1 else 0]
+            _solve_block(cables, A, poses, rows, sizing, iterations, step, lightness)
+            evaluate(cables)
+            check(poses, cables, rows)
             if not sizing:
                 _refuse_other_weights(poses)
             _store(out, cables, poses, lane, sizing)
@@ -126,7 +132,6 @@ def _solve_block(
     cables: FloatArray,
     A: FloatArray,
     poses: FloatArray,
-    figures: CableFigures,
     rows: IntArray,
     sizing: bool,
     iterations: int,
@@ -138,18 +143,18 @@ def _solve_block(
     With `lightness` above zero it starts from cables lighter by that factor, which are nearly
     straight, and lets them grow heavier step by step.
     """
-    n = figures.kappa.size
+    n = cables.shape[0]
     for iteration in range(iterations):
         if iteration > 0:
-            linearise(cables, figures.kappa)
-        assemble(A, cables, poses, figures.weights, rows)
+            linearise(cables)
+        assemble(A, cables, poses, rows)
         solve_lanes(A, n, n + 2)
         if sizing:
-            aim_at_strength(poses, A, cables, figures.strength)
+            aim_at_strength(poses, A, cables)
         if iteration == 0:
             for j in range(LANES):
                 poses[C, j] = poses[GOAL, j] + lightness * abs(poses[GOAL, j])
-            first_guess(cables, A, poses, figures.weights)
+            first_guess(cables, A, poses)
             poses[STEP] = 0.0
         else:
             approach(poses, lightness > 0.0)
@@ -159,12 +164,14 @@ def _solve_block(
 
 
 @kernel
-def evaluate(cables: FloatArray, kappa: FloatArray) -> None:
+def evaluate(cables: FloatArray) -> None:
     """Put the true pull, top tension and closure error of the state into the cable rows."""
     for i in range(cables.shape[0]):
-        row, k = cables[i], kappa[i]
+        row = cables[i]
         for j in range(LANES):
-            F, _, F_l, v, _, _, t, _, _ = unit_cable(row[P, j], row[L, j], row[X2, j], row[D, j], k)
+            F, _, F_l, v, _, _, t, _, _ = unit_cable(
+                row[P, j], row[L, j], row[X2, j], row[D, j], row[KAPPA, j]
+            )
             row[V, j] = v
             row[T, j] = t
             # A cable stretched through zero length closes too, with a negative tension.
@@ -172,13 +179,7 @@ def evaluate(cables: FloatArray, kappa: FloatArray) -> None:
 
 
 @kernel
-def check(
-    poses: FloatArray,
-    cables: FloatArray,
-    weights: FloatArray,
-    strength: FloatArray,
-    rows: IntArray,
-) -> None:
+def check(poses: FloatArray, cables: FloatArray, rows: IntArray) -> None:
     """Compute the residuals of closure and of the platform's balance, and the worst overload.
 
     The balance in the components `rows`, moments over the reach of the attachments, ends in row
@@ -193,19 +194,19 @@ def check(
         for j in range(LANES):
             poses[REST + m, j] = -poses[C, j] * poses[LOAD + m, j]
         for i in range(cables.shape[0]):
-            row, w = cables[i], weights[i]
+            row = cables[i]
             for j in range(LANES):
-                poses[REST + m, j] += w * (
+                poses[REST + m, j] += row[SHARE, j] * (
                     row[LEVEL + m, j] * row[P, j] + row[LIFT + m, j] * row[V, j]
                 )
     for i in range(cables.shape[0]):
-        row, w = cables[i], weights[i]
+        row = cables[i]
         for j in range(LANES):
-            poses[SCALE, j] = max(poses[SCALE, j], w * row[T, j])
+            poses[SCALE, j] = max(poses[SCALE, j], row[SHARE, j] * row[T, j])
             poses[REACH, j] = max(poses[REACH, j], row[LEVER, j])
             poses[CLOSURE, j] = max(poses[CLOSURE, j], row[L_0, j])
             poses[RESIDUAL, j] = max(poses[RESIDUAL, j], row[L_0, j] / row[L, j])
-            burst = row[T, j] / strength[i] if row[P, j] >= PULL_FLOOR else np.inf
+            burst = row[T, j] / row[STRENGTH, j] if row[P, j] >= PULL_FLOOR else np.inf
             poses[OVERLOAD, j] = max(poses[OVERLOAD, j], burst)
             # A singular matrix leaves infinity or NaN in some cables; the sum lets them through.
             straight = row[STRAIGHT, j]

@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.kernel.calling import Situation
+from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import element
 from designer.kernel.unit_cable import unit_cable
 
@@ -29,8 +29,19 @@ EX, EY = LEVEL, LEVEL + 1  # the horizontal vector to the exit point is the forc
 # length follows the closure, and the change of that length.
 P, L, V, V_P, T, T_P, L_0, L_P = range(16, 24)
 STRAIGHT = 24  # tension of a straight, weightless cable
-LANE_ROWS = 25
+# Of the cable: weight over stiffness, weight relative to w, allowable tension over weight.
+KAPPA, SHARE, STRENGTH = range(25, 28)
+LANE_ROWS = 28
 """Of a table whose columns are lanes; more follow where they are cables."""
+
+
+@element
+def put_cable(table: FloatArray, j: int, figures: CableFigures, at: int, i: int) -> None:
+    """Fill the figures of cable i in pose `at` into a column."""
+    row = at if figures.kappa.shape[0] > 1 else 0
+    table[KAPPA, j] = figures.kappa[row, i]
+    table[SHARE, j] = figures.weights[row, i]
+    table[STRENGTH, j] = figures.strength[row, i]
 
 
 @element
@@ -89,10 +100,10 @@ def straighten(table: FloatArray, j: int, carried: float) -> None:
 
 
 @element
-def condense(table: FloatArray, j: int, kappa: float) -> None:
+def condense(table: FloatArray, j: int) -> None:
     """Condense a cable's length: pull and top tension as linear functions of the step in p."""
     F, F_p, F_l, v, v_p, v_l, t, t_p, t_l = unit_cable(
-        table[P, j], table[L, j], table[X2, j], table[D, j], kappa
+        table[P, j], table[L, j], table[X2, j], table[D, j], table[KAPPA, j]
     )
     l0 = -F / F_l
     lp = -F_p / F_l

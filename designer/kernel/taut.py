@@ -19,9 +19,9 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import kernel
-from designer.kernel.lanes import POSE_ROWS, assemble, lanes_of, normal_equations, place
+from designer.kernel.lanes import POSE_ROWS, assemble, lanes_of, normal_equations, place, put_cables
 from designer.kernel.linear import solve_lanes
-from designer.kernel.table import CHORD, LANE_ROWS, LANES, X2, D, L, P
+from designer.kernel.table import CHORD, KAPPA, LANE_ROWS, LANES, SHARE, X2, D, L, P
 from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
 
 LENGTH, EXIT_TENSION, DISTANCE = range(3)
@@ -51,19 +51,21 @@ def solve_taut_poses(
         Filled with unstrained length [m], tension at the exit point [N], horizontal distance [m];
         length and tension are NaN for a pull below `PULL_FLOOR`, which is no taut cable at all.
     """
-    count, n, m = situation.positions.shape[0], figures.kappa.size, situation.rows.size
+    count, n, m = situation.positions.shape[0], situation.attachments.shape[0], situation.rows.size
     cables = np.empty((n, LANE_ROWS + 3, LANES))
     A = np.empty((m, n + 2, LANES))
     normal = np.empty((n + 1, n + 1, LANES))
     poses = np.empty((POSE_ROWS, LANES))
-    ones, every = np.ones(n), np.arange(count)
+    every = np.arange(count)
     for first in range(0, count, LANES):
-        place(cables, poses, situation, lanes_of(every, first))
-        assemble(A, cables, poses, ones, situation.rows)
+        lane = lanes_of(every, first)
+        place(cables, poses, situation, lane)
+        put_cables(cables, figures, lane)
+        assemble(A, cables, poses, situation.rows)
         for r in range(m):
             for i in range(n):
                 for j in range(LANES):
-                    A[r, i, j] /= cables[i, CHORD, j]
+                    A[r, i, j] /= cables[i, SHARE, j] * cables[i, CHORD, j]
         normal_equations(normal, A, m, n + 1)
         for j in range(LANES):
             trace = 0.0
@@ -73,21 +75,22 @@ def solve_taut_poses(
                 normal[i, i, j] += regular * trace / n
         solve_lanes(normal, n, n + 1)
         for i in range(n):
-            row, w = cables[i], figures.weights[i]
+            row = cables[i]
             for j in range(LANES):
-                p = max(normal[i, n, j], figures.least_tension) / row[CHORD, j] / w
+                p = max(normal[i, n, j], figures.least_tension) / row[CHORD, j] / row[SHARE, j]
                 row[P, j] = p if p >= PULL_FLOOR else math.nan  # NaN stays NaN
-            _close(row, figures.kappa[i])
+            _close(row)
             for j in range(min(LANES, count - first)):
                 p, length, X = row[P, j], row[L, j], math.sqrt(row[X2, j])
-                v = unit_cable(p, length, row[X2, j], row[D, j], figures.kappa[i])[3]
+                v = unit_cable(p, length, row[X2, j], row[D, j], row[KAPPA, j])[3]
+                pull = math.sqrt((p * X) ** 2 + (v + length) ** 2)
                 out[first + j, i, LENGTH] = length
-                out[first + j, i, EXIT_TENSION] = w * math.sqrt((p * X) ** 2 + (v + length) ** 2)
+                out[first + j, i, EXIT_TENSION] = row[SHARE, j] * pull
                 out[first + j, i, DISTANCE] = X
 
 
 @kernel
-def _close(row: FloatArray, kappa: float) -> None:
+def _close(row: FloatArray) -> None:
     """Solve a cable for its length at the given pulls.
 
     A step of Newton, or half of the bracket where that would leave it.
@@ -96,14 +99,14 @@ def _close(row: FloatArray, kappa: float) -> None:
         p = row[P, j]
         theta2 = 0.25 / (p * p)
         stiff = math.sqrt(row[D, j] ** 2 + row[X2, j] * (1.0 + theta2 * sag_series(theta2)))
-        row[L, j] = stiff / (1.0 + kappa * p * stiff)
+        row[L, j] = stiff / (1.0 + row[KAPPA, j] * p * stiff)
         row[_LOW, j] = 0.0
-        row[_HIGH, j] = 1.0 / (kappa * p)
+        row[_HIGH, j] = 1.0 / (row[KAPPA, j] * p)
     for _ in range(_MOST_TURNS):
         for j in range(LANES):
             length = row[L, j]
             F, _F_p, F_l, _v, _v_p, _v_l, _t, _t_p, _t_l = unit_cable(
-                row[P, j], length, row[X2, j], row[D, j], kappa
+                row[P, j], length, row[X2, j], row[D, j], row[KAPPA, j]
             )
             low = length if F > 0.0 else row[_LOW, j]
             high = row[_HIGH, j] if F > 0.0 else length

@@ -34,10 +34,11 @@ from designer.kernel.lanes import (
     linearise,
     normal_equations,
     place,
+    put_cables,
     write_lane,
 )
 from designer.kernel.linear import solve_lanes
-from designer.kernel.table import CHORD, L_0, LANE_ROWS, LANES, L, P
+from designer.kernel.table import CHORD, KAPPA, L_0, LANE_ROWS, LANES, SHARE, L, P
 
 _LEAST_PULL = 1.0 / 16.0
 """Smallest pull: the cable is then nearly two hundred times as long as its horizontal distance."""
@@ -81,8 +82,8 @@ def solve_underactuated_poses(
     out_pose : array (n_poses, 3)
         Filled with `STEP_LEFT`, `WRENCH_LEFT` and `LONGEST`.
     """
-    weights, rows = figures.weights, situation.rows
-    count, n, m = situation.positions.shape[0], weights.size, rows.size
+    rows = situation.rows
+    count, n, m = situation.positions.shape[0], situation.attachments.shape[0], rows.size
     cables = np.empty((n, LANE_ROWS + 2, LANES))
     slopes = np.zeros((max(n, m) + 1, n + 2, LANES))
     normal = np.empty((n + 1, n + 1, LANES))
@@ -91,11 +92,12 @@ def solve_underactuated_poses(
     for first in range(0, count, LANES):
         lane = lanes_of(every, first)
         place(cables, poses, situation, lane)
+        put_cables(cables, figures, lane)
         poses[C] = 0.0
-        _start(cables, slopes, normal, poses, figures, rows, scale)
+        _start(cables, slopes, normal, poses, figures.least_tension, rows, scale)
         for turn in range(_MOST_TURNS):
-            linearise(cables, figures.kappa)
-            _set_left(slopes, cables, poses, weights, rows, scale)
+            linearise(cables)
+            _set_left(slopes, cables, poses, rows, scale)
             for j in range(LANES):  # ε stands where a goal would, of which there is none
                 load = poses[LOAD, j] ** 2 + poses[LOAD + 1, j] ** 2 + poses[LOAD + 2, j] ** 2
                 poses[GOAL, j] = max(_left2(slopes, n, m, j) / load, _LEAST_REGULAR)
@@ -111,10 +113,10 @@ def solve_underactuated_poses(
                     cables[i, P, j] = max(cables[i, P, j], cables[i, _LEAST, j])
             if np.max(poses[STEP]) < _SMALL_STEP:
                 break
-        linearise(cables, figures.kappa)
-        _set_left(slopes, cables, poses, weights, rows, scale)
+        linearise(cables)
+        _set_left(slopes, cables, poses, rows, scale)
         for j in range(min(LANES, count - first)):
-            write_lane(out[lane[j]], cables, weights, j)
+            write_lane(out[lane[j]], cables, j)
             told = out_pose[lane[j]]
             told[STEP_LEFT], told[LONGEST] = poses[STEP, j], 0.0
             told[WRENCH_LEFT] = np.sqrt(_left2(slopes, n, m, j))
@@ -132,27 +134,27 @@ def _start(
     slopes: FloatArray,
     normal: FloatArray,
     poses: FloatArray,
-    figures: CableFigures,
+    least_tension: float,
     rows: IntArray,
     scale: FloatArray,
 ) -> None:
     """Set the pulls of straight cables with half of their weight at the platform."""
     n = cables.shape[0]
     for i in range(n):
-        row, weight = cables[i], figures.weights[i]
+        row = cables[i]
         row[_START] = 0.0
         for j in range(LANES):
-            row[_LEAST, j] = max(figures.least_tension / (weight * row[CHORD, j]), _LEAST_PULL)
-    _set_left(slopes, cables, poses, figures.weights, rows, scale)
+            row[_LEAST, j] = max(least_tension / (row[SHARE, j] * row[CHORD, j]), _LEAST_PULL)
+    _set_left(slopes, cables, poses, rows, scale)
     poses[GOAL] = _REGULAR_START
     _set_normal(normal, slopes, cables, poses, rows.size)
     solve_lanes(normal, n, n + 1)
     for i in range(n):
-        row, kappa = cables[i], figures.kappa[i]
+        row = cables[i]
         for j in range(LANES):
             p = max(normal[i, n, j], row[_LEAST, j])
             row[_START, j] = row[P, j] = p
-            row[L, j] = row[CHORD, j] / (1.0 + kappa * p * row[CHORD, j])
+            row[L, j] = row[CHORD, j] / (1.0 + row[KAPPA, j] * p * row[CHORD, j])
 
 
 @inner
@@ -160,13 +162,12 @@ def _set_left(
     slopes: FloatArray,
     cables: FloatArray,
     poses: FloatArray,
-    weights: FloatArray,
     rows: IntArray,
     scale: FloatArray,
 ) -> None:
     """Set G in the first n columns, and S (f - W) in the next."""
     n = cables.shape[0]
-    assemble(slopes, cables, poses, weights, rows)
+    assemble(slopes, cables, poses, rows)
     for r in range(rows.size):
         for j in range(LANES):
             slopes[r, n, j] += slopes[r, n + 1, j]

@@ -82,7 +82,7 @@ def _inertia_wrench_N(robot: Robot, poses: Poses) -> FloatArray | None:
 
 def one_cable(robot: Robot, cable: Cable | Cables, least_tension_N: float = 0.0) -> CableFigures:
     """Return what kernels are told of the cables, weights per length [N/m]."""
-    ones, weight = np.ones(robot.n_cables), cable.weight_N_per_m
+    ones, weight = np.ones((1, robot.n_cables)), cable.weight_N_per_m
     kappa = plain(weight / cable.axial_stiffness_N * ones)
     return CableFigures(kappa, plain(weight * ones), plain(np.inf * ones), least_tension_N)
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from designer.arrays import BoolArray, IntArray, require_shape
-from designer.kernel.calling import Meets, plain, share_out
+from designer.kernel.calling import CableFigures, Meets, plain, share_out
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
 from designer.progress import checkpoint
@@ -83,9 +83,12 @@ def meet(
         _SHARE,
         upright_situation(robot, poses, upright_exit_points_m(robot)),
         plain(1.0 / heaviest),
-        plain(weight / stiffness),
-        plain(allowable / weight),
-        plain(weight / heaviest[:, None]),
+        CableFigures(
+            plain(weight / stiffness),
+            plain(weight / heaviest[:, None]),
+            plain(allowable / weight),
+            0.0,
+        ),
         np.ascontiguousarray(cells, dtype=np.int64),
         leaves_out_hanging,
         meets,
