@@ -17,6 +17,7 @@ from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.progress import Advance
+from designer.statics.inverse import solve_sagging
 from designer.statics.sizes import add_slowly, is_quick, meet
 from designer.workspace.demand import rope_demand
 from designer.workspace.refine import (
@@ -252,18 +253,21 @@ def _meet(
     if not is_quick(robot):
         return meets, meets.failed.argmax(axis=1)
     lost = np.zeros(len(cables), dtype=np.int64)
-    refuted = np.zeros(len(positions), dtype=np.int64)
-    for row in np.flatnonzero(meets.failed.any(axis=1)).tolist():
-        # What refutes a cable refutes most of the others.
+    open_rows = np.flatnonzero(meets.failed.any(axis=1))
+    if gives_up and len(open_rows):  # the pose that refutes most of them first, of all at once
+        shared = meets.failed[open_rows] * meets.failed.sum(axis=0)
+        lost[open_rows] = shared.argmax(axis=1)
+        tried = Cables([cables[row] for row in open_rows], np.arange(len(open_rows)))
+        probed = solve_sagging(robot, poses.part(lost[open_rows]), tried, seeks_better=False)
+        open_rows = open_rows[probed.is_solved]
+    for row in open_rows.tolist():
         hard = np.flatnonzero(meets.failed[row])
-        hard = hard[np.argsort(-refuted[hard], kind="stable")]
-        # After the first, after 16 and after each 256, a look whether the cable has failed.
-        edges = [0, 1, 16, *range(256, len(hard) + 256, 256)]
+        # After the first 16 and after each 256, a look whether the cable has failed.
+        edges = [0, 16, *range(256, len(hard) + 256, 256)]
         for batch in (hard[a:b] for a, b in pairwise(edges) if a < len(hard)):
             add_slowly(meets, row, robot, poses, cables[row], cells, exclude, batch)
             fails = batch[meets.failed[row, batch]]
             if len(fails):
-                refuted[fails] += 1
                 lost[row] = fails[0]
                 if gives_up:
                     break
