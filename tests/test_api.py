@@ -42,6 +42,7 @@ def test_the_package_itself_loads_nothing_heavy() -> None:
     assert done.stdout == "[]\n"
 
 
+@pytest.mark.slow
 def test_a_study_made_in_python_is_analysed_without_a_folder(tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     robot = designer.Robot(

@@ -58,6 +58,7 @@ def designer(capsys, monkeypatch, tmp_path) -> Callable[..., Outcome]:
     return run
 
 
+@pytest.mark.slow
 def test_help_and_version_import_nothing_heavy() -> None:
     code = (
         "import sys\n"
@@ -74,6 +75,7 @@ def test_help_and_version_import_nothing_heavy() -> None:
         assert run.stdout.splitlines()[-1] == "[]"
 
 
+@pytest.mark.slow
 def test_the_version_for_a_bug_report(designer) -> None:
     assert len(designer("--version").out.splitlines()) == 1
     told = dict(line.split(maxsplit=1) for line in designer("--version", "-v").out.splitlines())

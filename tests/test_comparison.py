@@ -45,6 +45,7 @@ def test_the_field_that_differs_and_what_follows_from_it(results) -> None:
     assert not any("created" in line.path for line in found.remaining)
 
 
+@pytest.mark.slow
 def test_a_result_with_itself_is_the_same(results) -> None:
     later = deepcopy(results[0])
     later["provenance"]["created"] = "2030-01-01T00:00:00+00:00"

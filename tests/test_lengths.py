@@ -77,6 +77,7 @@ def test_at_the_worst_pose_it_is_the_reports_tension(tmp_path) -> None:
     assert (lengths.statics.length_m[0] <= met.longest_m * (1 + 1e-9)).all()
 
 
+@pytest.mark.slow
 def test_a_pose_that_is_not_held_is_a_negative_answer(tmp_path, designer) -> None:
     file = poses(tmp_path, "x_m,y_m,z_m\n250,200,-100\n250,-5,-100\n")
     found = designer("lengths", str(study(tmp_path)), "--poses", str(file), "-o", "out.csv")
@@ -154,6 +155,7 @@ def test_load_cases_are_said_to_be_left_out(tmp_path, designer) -> None:
     )
 
 
+@pytest.mark.slow
 def test_effects_that_are_not_in_the_lengths_are_named(tmp_path, designer) -> None:
     effects = (
         "effects:\n"

@@ -265,6 +265,7 @@ main()
 """
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.skipif(os.name != "posix", reason="limits of POSIX")
 @pytest.mark.parametrize("room", [0, 4000, 30_000], ids=["none", "half a study", "no schema"])
 def test_init_on_a_full_disk_leaves_no_file(tmp_path: Path, room: int) -> None:

@@ -49,6 +49,7 @@ def test_a_reader_who_goes_away_is_no_negative_answer(
     assert (done.returncode, done.stderr) == (128 + signal.SIGPIPE, b"")
 
 
+@pytest.mark.cases_by_default(1)
 @posix
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
 @pytest.mark.parametrize("command", [("init", "--list"), LIST], ids=["plain", "table"])
@@ -62,6 +63,7 @@ def test_an_output_that_is_full_is_told_in_one_line(command: tuple[str, ...]) ->
     assert done.stderr.count(b"\n") == 1
 
 
+@pytest.mark.slow
 @posix
 def test_no_output_at_all() -> None:
     closed = f"exec {' '.join([*DESIGNER, *LIST])} >&-"
@@ -69,6 +71,7 @@ def test_no_output_at_all() -> None:
     assert (done.returncode, done.stderr) == (0, b"")
 
 
+@pytest.mark.slow
 def test_letters_that_the_terminal_lacks_become_question_marks() -> None:
     done = subprocess.run(
         [*DESIGNER, *LIST],
@@ -209,7 +212,7 @@ def test_a_fault_of_the_program_is_one_line_and_no_answer(tmp_path: Path, error:
     assert "Traceback" in kept.read_text()
 
 
-@pytest.mark.cases_by_default(1)
+@pytest.mark.slow
 @posix
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
 @pytest.mark.parametrize("command", [("size", "none.yaml"), ("siez",), ("catalog", "show", "none")])

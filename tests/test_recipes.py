@@ -44,6 +44,7 @@ def test_every_verdict_but_solved_says_what_to_do() -> None:
         assert verdict.advice.startswith("Move the configured pose")
 
 
+@pytest.mark.slow
 def test_verdicts_are_listed_only_where_they_are_defined() -> None:
     package = Path(designer.__file__).parent
     home = package / "model" / "verdict.py"

@@ -211,7 +211,7 @@ def _other_policy(analysis: Analysis) -> OtherPolicy | None:
     policy: HangsBelow = "exclude" if workspace.hangs_below == "include" else "include"
     changed = replace(_few(built.robot, workspace), hangs_below=policy)
     material = built.material(analysis.study.material)
-    return OtherPolicy(policy, map_workspace(built.robot, changed, material))
+    return OtherPolicy(policy, map_workspace(built.robot, changed, material, with_massless=False))
 
 
 def _hanging(analysis: Analysis) -> float | None:

@@ -40,6 +40,8 @@ _MORE_RISE = 2.0
 """How much a climb may still rise, over what the first part brought to any of its extreme."""
 _MOST_TURNS = 200
 """A demand that grows in ever smaller steps, as at the edge of what can be held, has no end."""
+_SHRINKS = 0.3
+"""Of a cloud where nothing rises."""
 _SHRINKS_AT_CORNER = 0.1
 """Of a cloud about a landmark of the space where nothing rises; a turn tries a factor of 30."""
 _MOST_ROUNDS = 8
@@ -403,7 +405,7 @@ class _PoseSearch:
             climbs.at[active] = to
             climbs.value[active] = np.where(better, demand[rows, highest], climb.value)
             is_corner[active] &= ~better
-            shrinks = np.where(is_corner[active], _SHRINKS_AT_CORNER, 0.5)
+            shrinks = np.where(is_corner[active], _SHRINKS_AT_CORNER, _SHRINKS)
             climbs.radius[active] = climb.radius * np.where(better, 1.1, shrinks)
 
     def _are_marks(self, at: FloatArray) -> BoolArray:

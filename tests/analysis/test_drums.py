@@ -96,6 +96,7 @@ def crane(**winches: Any) -> dict[str, Any]:
     return base | {"robot": base["robot"] | {"winches": winches}, "workspace": workspace}
 
 
+@pytest.mark.slow
 def test_spooling_decides_the_answer(tmp_path: Path) -> None:
     short = analysed(crane(drum_diameter=0.12, drum=DRUM), tmp_path)
     (asked,) = (each for each in short.requirements if each.id == "spooling")
@@ -117,6 +118,7 @@ def test_spooling_decides_the_answer(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_rope_that_does_not_fit_the_grooves_is_rejected(tmp_path: Path) -> None:
     study = crane(drum_diameter=0.12, layers=3, drum=DRUM | {"groove_pitch": 0.0085, "length": 0.2})
     analysis = analysed(study, tmp_path)

@@ -114,6 +114,7 @@ def test_reactions_match_reference_and_add_up(name: str, solve_study: Solve) -> 
         assert reaction.size_N == pytest.approx(size)
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("name", EACH)
 def test_runs_carry_platform_and_cables(name: str, solve_study: Solve) -> None:
     study = STUDIES[name]
@@ -129,6 +130,7 @@ def test_runs_carry_platform_and_cables(name: str, solve_study: Solve) -> None:
         assert np.allclose(runs, loads, rtol=0, atol=1e-7 * np.linalg.norm(loads))
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("name", ["crane", "crane, winches", "crane, pulleys"])
 def test_no_sample_exceeds_the_envelope(name: str, solve_study: Solve) -> None:
     study = STUDIES[name]
@@ -149,6 +151,7 @@ def test_no_sample_exceeds_the_envelope(name: str, solve_study: Solve) -> None:
         assert largest - 1e-6 * abs(largest) <= reaction.size_N <= largest + 0.1 * abs(largest)
 
 
+@pytest.mark.slow
 def test_lost_cable_pulls_on_no_mast(tmp_path: Path) -> None:
     text = BASES["four"]
     study = text | {"load_cases": [{"name": "case", "cable_lost": 2}]}

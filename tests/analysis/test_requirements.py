@@ -93,6 +93,7 @@ def test_limits_that_no_rope_meets_are_a_no(tmp_path: Path, solve: Solve) -> Non
         assert words in told.output
 
 
+@pytest.mark.slow
 def test_a_rope_that_may_be_bent_is_chosen_before_a_lighter_one(solve: Solve) -> None:
     """The lighter 7×7 construction asks for a larger sheave than the study has."""
     crane = CRANE.replace("60 kg", "100 kg")
@@ -115,6 +116,7 @@ def test_a_rope_that_may_be_bent_is_chosen_before_a_lighter_one(solve: Solve) ->
     assert "sheave fails: demand" in same[0].reason
 
 
+@pytest.mark.slow
 def test_ice_takes_a_cable_below_the_floor_in_its_load_case(solve: Solve) -> None:
     cases = "load_cases: [{name: dry}, {name: icy, ice: {thickness: 60 mm}}]\n"
     floor = REGION.replace("samples", "floor: 1.4 m, sag: none, samples")

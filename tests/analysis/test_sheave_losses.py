@@ -67,6 +67,7 @@ def drawn_and_returned_J(rows: np.ndarray, kept: float, efficiency: float) -> np
     return energies
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("seed", [26, 1130, 40417])
 def test_energy_is_that_of_an_integration_step_by_step(tmp_path: Path, seed: int) -> None:
     rows = rows_of(seed)

@@ -37,6 +37,7 @@ def states(study: Study, analysis: Analysis, case: dict[str, Any] | None = None,
         yield solve(situation.problem, Pose(low + share * (high - low)))
 
 
+@pytest.mark.slow
 def test_largest_tension_at_exit_points(tmp_path: Path) -> None:
     study = crane(winches={"tension_max": 2500.0})
     analysis = analysed(study, tmp_path)
@@ -82,6 +83,7 @@ def test_torque_with_groups_of_cables(tmp_path: Path) -> None:
     assert motor.demand == pytest.approx((pull_N * radius_m).max(), rel=1e-6)
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("share", [0.99, 1.01])
 def test_winch_decides_the_answer(tmp_path: Path, share: float) -> None:
     asked = analysed(crane(winches={"tension_max": 1e6}), tmp_path)

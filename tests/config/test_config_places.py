@@ -120,7 +120,7 @@ def test_a_search_keeps_to_the_law(study_of: StudyOf) -> None:
     assert worst.demand >= demand(dense).max() - 1e-12
 
 
-@pytest.mark.cases_by_default(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_a_free_orientation_is_as_good_as_brute_force(seed: int, study_of: StudyOf) -> None:
     rng = np.random.default_rng(seed)
@@ -146,6 +146,7 @@ def test_a_free_orientation_is_as_good_as_brute_force(seed: int, study_of: Study
     assert f"{law.excess:.1%} thicker" in law.words
 
 
+@pytest.mark.slow
 def test_a_long_list_is_free_between_some_of_its_poses(study_of: StudyOf) -> None:
     positions = np.random.default_rng(5).uniform([-2, -2, 1], [2, 2, 4], (900, 3))
     rows = "\n".join(",".join(f"{x:.3f}" for x in position) for position in positions)

@@ -44,6 +44,7 @@ def fitted(case, *, without=None, noise=None):
     return problem, fit(problem, case.given, rows, thorough=True)
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize(
     ("robot", "unknown"),
     [(YARD3, ("length_offset", "drum_scale")), (HALL6, ("anchors",))],
@@ -64,6 +65,7 @@ def test_the_largest_change_without_a_row_is_that_of_a_fit_without_it(
         assert parameter.influence == pytest.approx(change, rel=0.1, abs=0.02)
 
 
+@pytest.mark.slow
 def test_standard_deviations_and_correlations_are_those_of_many_logs(tmp_path) -> None:
     fits = []
     for seed in range(40):

@@ -126,6 +126,7 @@ def test_it_names_all_files_of_a_log(files, tmp_path) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_what_is_unknown_stays_so_and_is_fitted_again(tmp_path) -> None:
     effects = drawn(YARD3, "pulley_radius", "length_offset")
     _, better = diagnosed(tmp_path, YARD3, effects, ["length_offset"], {"pulley_radius": {}})

@@ -39,6 +39,7 @@ def test_the_filter_makes_white_what_the_whole_covariance_does(decay: float, sha
     assert sum(log.sum() for _, log in steps) == pytest.approx(np.linalg.slogdet(covariance)[1])
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("decay", [0.9, 0.97])
 def test_a_constant_gains_nothing_in_noise_that_lasts(decay: float) -> None:
     rng = np.random.default_rng(1)
@@ -88,6 +89,7 @@ def test_errors_that_a_row_mixes_are_made_white_as_by_the_whole_covariance() -> 
     assert flat.T @ flat == pytest.approx(expected, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_zeros_gain_nothing_in_sensors_that_drift_however_rows_mix_them() -> None:
     rng = np.random.default_rng(5)
     every, is_read = np.ones(CHANNELS, dtype=np.bool_), np.ones((ROWS, CHANNELS), dtype=np.bool_)

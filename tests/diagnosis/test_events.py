@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from scipy.signal import lfilter
 
 from designer.diagnosis.events import find_common, find_events, find_swapped
@@ -35,6 +36,7 @@ def test_a_wave_in_its_own_length_is_a_drum_off_centre() -> None:
     assert text.startswith("a wave in length 2, 0.471 m long and 2 times")
 
 
+@pytest.mark.slow
 def test_noise_that_lasts_is_no_wave_in_a_length_that_moves_slowly() -> None:
     _, predicted, covariates = readings()
     slow_m = 6.0 + 3.0 * np.sin(np.outer(np.arange(ROWS) / 8.0, [1.0, 1.1, 1.2]))

@@ -74,6 +74,7 @@ def case_with(time_s: float, folder) -> Case:
     return case_of(replace(study, measurements=measurements), measurements, read_measured(study))
 
 
+@pytest.mark.slow
 def test_a_search_without_time_says_what_it_did_not_try(tmp_path) -> None:
     found = diagnose(case_with(0.0, tmp_path))
     assert found.findings == ()
@@ -104,6 +105,7 @@ def test_time_may_end_between_two_rounds(tmp_path, monkeypatch) -> None:
     }
 
 
+@pytest.mark.slow
 def test_what_is_not_tested_on_unseen_rows_is_no_finding(tmp_path, monkeypatch) -> None:
     clock = Clock()
     began = Pace.each

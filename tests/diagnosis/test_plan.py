@@ -95,6 +95,7 @@ def test_too_few_poses_leave_something_untold(tmp_path, designer) -> None:
     assert not all(entry["told"] for entry in content["expected"])
 
 
+@pytest.mark.slow
 def test_poses_of_a_plan_are_held_within_strength(tmp_path) -> None:
     study = read_study(config(tmp_path, HALL6))
     strong, rope = study.measurements.cable(), study.measurements

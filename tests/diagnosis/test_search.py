@@ -38,12 +38,14 @@ def searcher_of(folder: Path) -> Searcher:
     return Searcher(problem, case.candidates, (), ~heldout_rows(case.measured.n_rows))
 
 
+@pytest.mark.slow
 def test_it_finds_and_ends(searcher) -> None:
     steps, _, found = searcher.run()
     assert [effect.id for effect in found] == ["platform_mass"]
     assert [step.added.id if step.added else None for step in steps] == ["platform_mass", None]
 
 
+@pytest.mark.slow
 def test_a_constant_and_a_step_are_found_beside_each_other(tmp_path, monkeypatch) -> None:
     size_kg = size_for(YARD3, "platform_mass", 10.0)
     heavy = make(YARD3, {"platform_mass": {"offset_kg": size_kg}}, rows=60)
@@ -64,6 +66,7 @@ def test_a_constant_and_a_step_are_found_beside_each_other(tmp_path, monkeypatch
     assert {effect.id for effect in both.run()[2]} != set(found)
 
 
+@pytest.mark.slow
 def test_it_ends_where_pruning_undoes_what_was_added(searcher, monkeypatch) -> None:
     monkeypatch.setattr(searcher, "_pruned", lambda found: [])
     steps, _, found = searcher.run()

@@ -187,6 +187,7 @@ def mirrored(dataset: DataSet, mirror: np.ndarray) -> DataSet:
 EXCHANGED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize(
     ("mirror", "text"),
     [(np.diag([1.0, -1.0, 1.0]), "y counted the other way"), (EXCHANGED, "x and y exchanged")],

@@ -28,6 +28,7 @@ def test_readings_are_foretold(tmp_path) -> None:
     assert np.abs(told.tension_N - case.measured.tension_N).max() < 1e-2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quantities", [("length",), ("length", "tension")])
 def test_cables_of_the_platforms_weight_are_no_finding(quantities, tmp_path) -> None:
     found = diagnose(case_with({}, tmp_path, quantities))

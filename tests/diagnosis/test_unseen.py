@@ -49,6 +49,7 @@ def test_noise_that_lasts_is_no_effect(robot, seed, tmp_path) -> None:
     assert found.structure_after.lasting.rows > 5.0
 
 
+@pytest.mark.slow
 def test_a_load_cell_at_the_end_of_its_range_has_no_wrong_gain(tmp_path) -> None:
     found = diagnosed("saturation", 2, tmp_path)
     assert found.findings == ()
@@ -56,6 +57,7 @@ def test_a_load_cell_at_the_end_of_its_range_has_no_wrong_gain(tmp_path) -> None
     assert "the upper end of the range of tension 3" in verdict(found).text
 
 
+@pytest.mark.slow
 def test_poses_measured_badly_are_scatter(tmp_path) -> None:
     found = diagnosed("pose noise", 0, tmp_path)
     assert found.findings == ()
@@ -89,6 +91,7 @@ def test_rows_held_out_decide_nothing_before_the_last_check(robot, tmp_path) -> 
         assert ours[key].parameters == theirs[key].parameters
 
 
+@pytest.mark.slow
 def test_an_unknown_far_off_is_not_plausible(tmp_path) -> None:
     """A mechanical advantage that is wrong in the config moves the exit points by metres."""
     case = case_in(make(YARD3, seed=3), tmp_path)
@@ -104,6 +107,7 @@ def test_an_unknown_far_off_is_not_plausible(tmp_path) -> None:
     assert "cannot be" in verdict(found).text
 
 
+@pytest.mark.slow
 def test_an_effect_with_values_that_are_not_plausible_is_never_found(tmp_path) -> None:
     case = case_in(make(YARD3, {"drum_scale": {"scale": 0.9}}, rows=48), tmp_path)
     kept = tuple(e for e in case.candidates if e.id in {"drum_scale", "platform_mass"})

@@ -70,6 +70,7 @@ def _each(rng: np.random.Generator, count: int) -> list[dict[str, float] | None]
     return [None if k == rng.integers(count) else line for k, line in enumerate(lines)]
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("differs", [False, True])
 @pytest.mark.parametrize("seed", range(4))
 def test_family_is_as_thick_as_bisection_finds(seed: int, differs: bool, tmp_path: Path) -> None:
@@ -86,6 +87,7 @@ def test_family_is_as_thick_as_bisection_finds(seed: int, differs: bool, tmp_pat
     assert float(analysis.pose.sizing.diameter_m) == pytest.approx(needed_m, rel=1e-6)
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("differs", [False, True])
 @pytest.mark.parametrize("seed", range(4))
 def test_ropes_of_the_catalogue_carry_it_and_keep_their_own_mass(

@@ -149,6 +149,7 @@ def test_the_worst_section_serves_every_pose_with_its_own_mass(iced: Analysis) -
     assert use == pytest.approx(1.0, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_candidates_are_proved_with_the_mass_that_they_have_there(iced: Analysis) -> None:
     assert iced.selection is not None and iced.selection.chosen is not None
     for candidate in iced.selection.candidates:

@@ -148,6 +148,7 @@ def replace_rope(question: Question, rope: Rope | None) -> Question:
     )
 
 
+@pytest.mark.slow
 def test_quick_ropes_hold_no_less_than_the_full_selection(edited: Question) -> None:
     quick, full = quick_ropes(edited), full_ropes(edited)
     assert quick is not None
@@ -208,6 +209,7 @@ def test_what_falls_out_is_there_with_its_reason(yard: Session) -> None:
     assert all("sheave" in row.reason for row in gone)
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize(
     ("name", "grids"),
     [
@@ -260,6 +262,7 @@ def test_without_a_rope_the_frequency_is_that_of_the_thinnest_cable(yard: Sessio
     assert lowest_Hz[3, 5] == pytest.approx(lowest.frequency_Hz, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_coarse_map_is_every_second_point_of_the_fine_one(example: Any) -> None:
     for name in ("facade", "stadium"):
         question = question_of(example(name))

@@ -30,6 +30,7 @@ def few(yard: Session) -> Session:
     return yard
 
 
+@pytest.mark.slow
 def test_nothing_differs_from_itself(few: Session) -> None:
     pin = pin_of(few)
     found = compare(pin, pin_of(few))
@@ -38,6 +39,7 @@ def test_nothing_differs_from_itself(few: Session) -> None:
     assert found.is_like_with_like
 
 
+@pytest.mark.slow
 def test_a_heavier_load(few: Session) -> None:
     few.choose(Rope(WIRE, "7/32 in"))
     before = pin_of(few)

@@ -35,6 +35,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+@pytest.mark.slow
 def test_tables(question: Question, tmp_path: Path) -> None:
     written = export(question, SILENT, content="tables", target=tmp_path / "out")
     assert [path.name for path in written] == ["cables.csv", "map.csv", "ropes.csv"]
@@ -70,6 +71,7 @@ def test_the_map_for_paraview(question: Question, tmp_path: Path) -> None:
     assert [one.name for one in tmp_path.iterdir()] == ["map.vtu"]
 
 
+@pytest.mark.slow
 def test_nothing_is_written_where_it_cannot_be(question: Question, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("x", encoding="utf-8")
     for what, target in (("tables", tmp_path / "file"), ("vtk", tmp_path / "file" / "map.vtu")):

@@ -42,6 +42,7 @@ def other_value(one: Field, rng: random.Random) -> str:
     return one.text_of(low + rng.uniform(0.2, 0.8) * (high - low))
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("name", example_names())
 def test_random_steps_are_undone_to_the_letter(name: str, example: Any) -> None:
     rng, session = random.Random(name), example(name)

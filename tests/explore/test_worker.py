@@ -176,6 +176,7 @@ def test_too_few_cables_are_told(asker: Any, tmp_path: Path, no_plugins: Plugins
     assert "fewer than its 6 degrees of freedom" in end.text
 
 
+@pytest.mark.slow
 def test_an_effect_of_a_plugin_that_fails_is_told(asker: Any, tmp_path: Path, site: Path) -> None:
     from designer.plugins.find import find_plugins
 
@@ -320,6 +321,7 @@ def helper_with(
     return Helper("select", deliver), got, told
 
 
+@pytest.mark.slow
 def test_a_process_that_breaks_is_told(yard: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     helper, got, told = helper_with(breaks, monkeypatch)
     helper.ask(Request(1, "select", question_of(yard)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 
+import pytest
 from models import FREE, LIMITS, bodies, cables, link, wirex, write_caspr
 
 from designer.errors import InputError
@@ -30,6 +31,7 @@ def spoilt(text: str, rng: random.Random) -> str:
     return text[:at] + text[at:].replace(old, new, 1)
 
 
+@pytest.mark.slow
 def test_damaged_files(tmp_path) -> None:
     rng = random.Random(3)
     whole = bodies(link(joint=f"{FREE} {LIMITS}")), cables(), wirex()

@@ -130,6 +130,7 @@ def test_an_entry_point_to_what_a_module_has_not_is_reported(site):
     assert problem.startswith("plugin acme-lost (acme-lost 1.2) cannot be loaded: AttributeError")
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize(
     ("name", "code", "failure"),
     [

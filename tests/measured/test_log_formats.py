@@ -401,6 +401,7 @@ def test_faults_of_a_bag(log: Log) -> None:
     assert fault.problem.startswith("this is no bag that can be read: ")
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("name", ["log.xlsx", "log.parquet"])
 def test_no_spoilt_file_escapes_as_another_error(log: Log, name: str) -> None:
     log.read()

@@ -42,6 +42,7 @@ def test_the_optimised_study_is_the_design_wherever_it_lies(tmp_path: Path) -> N
     assert comparison["same"] is False
 
 
+@pytest.mark.slow
 def test_the_page_says_what_is_not_proved(tmp_path: Path) -> None:
     found = optimum(tmp_path, OF_POSE.replace("150", "30"))
     assert "not proved the best" in trust_lines(found)[0]
@@ -50,6 +51,7 @@ def test_the_page_says_what_is_not_proved(tmp_path: Path) -> None:
     assert [one.id for one in report.sections] == ["answer", "variables", "differences", "trust"]
 
 
+@pytest.mark.slow
 def test_nothing_better_is_no_gain(tmp_path: Path) -> None:
     """The study as it is has the highest masts that may be."""
     plan = OF_POSE.replace("[6 m, 12 m]", "[6 m, 10 m]").replace("[-4 m, 6 m]", "[-1 m, 1 m]")
@@ -76,6 +78,7 @@ def test_a_design_that_asks_for_less_says_so(tmp_path: Path) -> None:
     assert [one["asks_for"] for one in found.to_dict()["variables"]] == [None, "less"]
 
 
+@pytest.mark.slow
 def test_the_answer_keeps_the_bounds_even_where_the_robot_as_given_does_not(
     tmp_path: Path,
 ) -> None:
@@ -87,6 +90,7 @@ def test_the_answer_keeps_the_bounds_even_where_the_robot_as_given_does_not(
     assert [found._variable(k)["at_bound"] for k in range(2)] == ["lower", "upper"]
 
 
+@pytest.mark.slow
 def test_no_design_that_holds_is_no_flat_optimum(tmp_path: Path) -> None:
     found = optimum(
         tmp_path,

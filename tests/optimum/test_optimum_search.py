@@ -21,6 +21,7 @@ from designer.optimum.search import _OverError, _Run, search
 from designer.optimum.trial import NO_STUDY, Examiner, Trial
 
 
+@pytest.mark.slow
 def test_it_finds_what_symmetry_and_reason_say(tmp_path: Path) -> None:
     """Masts as high as may be, and as far to the left of the pose as to its right."""
     found = optimum(tmp_path)
@@ -33,7 +34,7 @@ def test_it_finds_what_symmetry_and_reason_say(tmp_path: Path) -> None:
     assert found.plan.variables[1].bound_at(height) == "upper"
 
 
-@pytest.mark.cases_by_default(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 def test_no_point_of_a_grid_is_better(tmp_path: Path, seed: int) -> None:
     """Two variables against each other, the best inside: what rope there is goes out or up."""
@@ -54,12 +55,14 @@ def test_no_point_of_a_grid_is_better(tmp_path: Path, seed: int) -> None:
     assert best.value <= min(holding) * (1.0 + 1e-4)
 
 
+@pytest.mark.slow
 def test_the_same_seed_finds_the_same(tmp_path: Path) -> None:
     plan = plan_of(tmp_path, OF_POSE.replace("150", "40"))
     trials = [search(Examiner(plan, ()), lambda _: None, lambda: False).trials for _ in range(2)]
     assert trials[0] == trials[1]
 
 
+@pytest.mark.slow
 def test_designs_that_fail_are_kept_with_their_reason_and_lead_away(tmp_path: Path) -> None:
     """Masts below the pose hold nothing; two masts at one point make no region."""
     plan = plan_of(tmp_path, OF_POSE.replace("[6 m, 12 m]", "[-30 m, 12 m]"))
@@ -94,6 +97,7 @@ def test_nothing_tried_is_told(tmp_path: Path) -> None:
         optimum_of(plan, stop=lambda: True)
 
 
+@pytest.mark.slow
 def test_quick_measures_are_those_of_the_whole_result(tmp_path: Path) -> None:
     plan = plan_of(tmp_path, OF_YARD, YARD)
     study = plan.base.study()

@@ -64,7 +64,7 @@ def test_it_is_named_and_the_rest_works(site: Path, code: str, words: str) -> No
     assert catalogue.grade("acme-python").origin == "acme-good"
 
 
-@pytest.mark.cases_by_default(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "body",
     ["import re; re.match('(a+)+$', 'a' * 60 + 'b')", "import time; time.sleep(60)"],
@@ -90,6 +90,7 @@ def test_effects_of_one_that_ends_its_process_are_never_loaded_here(site: Path) 
     assert "acme_bad" not in sys.modules
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("file", ["METADATA", "entry_points.txt"])
 def test_metadata_that_is_no_text(site: Path, file: str) -> None:
     install_plugin(site, "acme-bad", hook("return []"))
@@ -126,6 +127,7 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> list[object]:
     return found
 
 
+@pytest.mark.slow
 def test_an_answer_is_kept_until_a_file_changes(site: Path, begun: list[object]) -> None:
     code = MADE_IN_PYTHON + hook("return [made()]")
     install_plugin(site, "acme-good", code)
@@ -142,6 +144,7 @@ def test_an_answer_is_kept_until_a_file_changes(site: Path, begun: list[object])
     assert len(begun) == 3
 
 
+@pytest.mark.slow
 def test_a_failure_is_not_kept(site: Path, begun: list[object]) -> None:
     install_plugin(site, "acme-bad", hook("raise OSError('no licence')"))
     for count in (1, 2):

@@ -98,6 +98,7 @@ def test_every_file_with_an_effect_is_registered_under_its_name() -> None:
     assert with_effect == SHIPPED.by_id.keys()
 
 
+@pytest.mark.slow
 def test_those_of_a_plugin_act_after_ours(site) -> None:
     install_plugin(site, "acme-drift", plugin(DRIFT))
     brought = known()
@@ -106,6 +107,7 @@ def test_those_of_a_plugin_act_after_ours(site) -> None:
     assert [*load_effects(find_plugins(with_plugins=False)).by_id] == [*SHIPPED.by_id]
 
 
+@pytest.mark.slow
 def test_a_plugin_may_bring_grades_and_effects(site) -> None:
     install_plugin(site, "acme-both", plugin(DRIFT) + hook("return []"))
     (both,) = (p for p in find_plugins().found if p.name == "acme-both")
@@ -151,6 +153,7 @@ def study_of(folder: Path, effects: str) -> Study:
     return read_study(path, known())
 
 
+@pytest.mark.slow
 def test_a_config_declares_it_with_its_units(site, tmp_path) -> None:
     install_plugin(site, "acme-ballast", plugin(LIGHTER))
     study = study_of(tmp_path, "lost_ballast: {ballast_kg: 2000 g}")
@@ -175,6 +178,7 @@ def test_mistakes_in_a_config_are_told_as_for_ours(site, tmp_path, effects, word
         study_of(tmp_path, effects)
 
 
+@pytest.mark.slow
 def test_it_may_be_unknown_from_the_start(site, tmp_path) -> None:
     install_plugin(site, "acme-drift", plugin(DRIFT))
     path = twin(tmp_path, 2.0)
@@ -187,6 +191,7 @@ def test_it_may_be_unknown_from_the_start(site, tmp_path) -> None:
         read_study(path)
 
 
+@pytest.mark.slow
 def test_its_unknown_is_fitted_where_nothing_is_declared(site, tmp_path) -> None:
     install_plugin(site, "acme-drift", plugin(DRIFT))
     path = twin(tmp_path, 2.0)
@@ -313,6 +318,7 @@ def test_the_schema_says_which_plugin_it_leaves_out(site, capsys) -> None:
     assert '"drum_layering"' in printed.out
 
 
+@pytest.mark.slow
 def test_one_id_of_two_plugins_keeps_the_first(site) -> None:
     install_plugin(site, "acme-one", plugin(DRIFT))
     install_plugin(site, "acme-two", plugin(DRIFT))
@@ -335,6 +341,7 @@ BROKEN_LAWS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "words"),
     [BROKEN_LAWS[0], *(pytest.param(*one, marks=pytest.mark.slow) for one in BROKEN_LAWS[1:])],
@@ -354,6 +361,7 @@ def test_a_law_that_fails_at_work_is_left_out_of_the_diagnosis(site, tmp_path, l
     assert problem.endswith(": left out")
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize(
     ("law", "words"),
     [("lambda m, v: v['mass']", "KeyError: 'mass'"), ("lambda m, v: m.robot", "returned Robot")],
@@ -369,6 +377,7 @@ def test_a_declared_effect_that_fails_at_work_stops_with_one_line(
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_an_effect_that_this_robot_cannot_have_is_not_passed_over(site, tmp_path) -> None:
     item = "replace(EFFECT, can_have=lambda m: not m.robot.is_point_mass)"
     install_plugin(site, "acme-ballast", plugin(LIGHTER, item))
@@ -377,6 +386,7 @@ def test_an_effect_that_this_robot_cannot_have_is_not_passed_over(site, tmp_path
         declared_settings(study)
 
 
+@pytest.mark.slow
 def test_the_commands_take_it_and_leave_it(site, tmp_path, capsys, monkeypatch) -> None:
     install_plugin(site, "acme-ballast", plugin(LIGHTER))
     install_plugin(site, "acme-fails", "raise RuntimeError('no licence')")
@@ -416,7 +426,7 @@ def test_readings_reach_a_plugin_as_arrays_that_it_cannot_spoil(site, tmp_path) 
     assert "read-only" in found.study.known_effects.problems[0]
 
 
-@pytest.mark.cases_by_default(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changed", "said"),
     [

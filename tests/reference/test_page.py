@@ -54,6 +54,7 @@ def test_the_robots_are_told_with_an_answer_or_a_reason() -> None:
         assert (one.diameter_mm is None) == (one.tension_N is None)
 
 
+@pytest.mark.slow
 def test_the_command_writes_what_it_shows(capsys, monkeypatch, tmp_path) -> None:
     monkeypatch.setattr(sys, "argv", ["designer", "verify", "-o", str(tmp_path / "page.md")])
     with pytest.raises(SystemExit) as stop:

@@ -95,6 +95,7 @@ def test_an_estimate_of_more_than_all_is_shown_as_all(used: np.ndarray) -> None:
     assert [row[1] for row in cells(whole, "Share of each")] == ["100\u00a0%", "0.0\u00a0%"]
 
 
+@pytest.mark.slow
 def test_what_is_not_held_is_said(used: np.ndarray) -> None:
     some = used.copy()
     some[:41] = np.inf

@@ -161,6 +161,7 @@ def test_governing_case_and_utilisation_agree_with_a_twin(name: str) -> None:
     assert chosen.verification.utilisation == chosen.governing.utilisation <= 1.0
 
 
+@pytest.mark.slow
 def test_a_study_without_cases_has_the_static_one() -> None:
     study = study_of("yard", 300)
     bare, one = chosen_for(study, ()), chosen_for(study, (LoadCase("static"),))

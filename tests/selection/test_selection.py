@@ -97,6 +97,7 @@ def test_poses_over_the_limit_are_counted_one_by_one_as_by_the_compiled_sweep(
     assert 0 < counts[0][1] < counts[0][0]
 
 
+@pytest.mark.slow
 def test_a_weak_size_is_passed_over(fast_robot, workspace) -> None:
     sizes = [12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0]
     sound = try_grade(fast_robot, workspace, rope("a", sizes), 2.0)
@@ -107,6 +108,7 @@ def test_a_weak_size_is_passed_over(fast_robot, workspace) -> None:
     assert 1e3 * weak.best.size.diameter_m > first
 
 
+@pytest.mark.slow
 def test_a_strong_size_below_the_snap_is_found(fast_robot, workspace) -> None:
     sizes = [12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0]
     sound = try_grade(fast_robot, workspace, rope("a", sizes), 2.0)
@@ -127,6 +129,7 @@ def test_the_lightest_of_several_grades_is_chosen(fast_robot, workspace) -> None
     )
 
 
+@pytest.mark.slow
 def test_grade_that_ends_too_thin_names_what_goes_on(fast_robot, workspace) -> None:
     thin, thick = rope("thin", [4.0, 8.0, 12.0]), rope("thick", [20.0, 24.0, 28.0])
     found = select(fast_robot, workspace, Selection(("thin",), 2.0), [thin, thick])
@@ -179,6 +182,7 @@ NOT_BY_DEFAULT = {
 }
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("kind", NOT_BY_DEFAULT)
 def test_some_grades_are_taken_only_by_name(kind: str, fast_robot, workspace) -> None:
     grades = [rope("sold", [24.0, 28.0]), NOT_BY_DEFAULT[kind]]
@@ -194,6 +198,7 @@ def test_ropes_are_no_single_strands(construction: str) -> None:
     assert replace(rope("a", [20.0]), construction=construction).why_only_by_name is None
 
 
+@pytest.mark.slow
 def test_what_matters_is_searched_between_the_samples(fast_robot, workspace) -> None:
     grades = [rope("a", list(np.arange(8.0, 60.0, 1.0))), rope("b", [30.0, 50.0])]
     found = select(fast_robot, workspace, ALL, grades)
@@ -218,6 +223,7 @@ def test_every_candidate_has_its_reason(fast_robot, workspace) -> None:
             assert candidate.reason.startswith(f"dominated by {found.chosen.size.id} of a")
 
 
+@pytest.mark.slow
 def test_search_turns_down_a_size_that_only_the_samples_let_pass(fast_robot) -> None:
     """Few samples miss the worst pose; the size that is enough for them alone must not win."""
     few = Workspace(Prism.over(TRIANGLE, 40.0, (-200.0, -60.0)), samples=40)

@@ -102,6 +102,7 @@ def test_first_objective_decides(objectives, grade: str, fast_robot, workspace) 
     assert alone.verification.max_tension_N == found.chosen.verification.max_tension_N
 
 
+@pytest.mark.slow
 def test_front_is_mutually_undominated_and_beats_the_rest(fast_robot, workspace) -> None:
     objectives = ("mass", "drum_diameter", "cost", "stiffness")
     found = select(fast_robot, workspace, Selection(None, 2.0, objectives), grades())

@@ -49,6 +49,7 @@ def as_material(candidate: Candidate) -> Material:
     )
 
 
+@pytest.mark.slow
 def test_sizing_at_the_worst_pose_finds_the_product_again(candidates, fast_robot) -> None:
     assert len(candidates) == 11
     for candidate in candidates:

@@ -131,6 +131,7 @@ def test_pose_outside_the_hull_ends_every_cable(fast_robot) -> None:
         assert one.served <= 2 / 3
 
 
+@pytest.mark.slow
 def test_worst_poses_are_from_all_over_and_the_search_ends_where_it_did(fast_robot) -> None:
     workspace = Workspace(LOW, samples=2000)
     for cable in cables()[3:6]:

@@ -26,6 +26,7 @@ TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 SIZES = [8.0, 14.0, 16.0, 18.0, 20.0, 24.0, 32.0]
 
 
+@pytest.mark.slow
 def test_share_is_that_of_the_poses_that_need_no_more(fast_robot) -> None:
     """In a grade after the law a size serves the poses whose needed diameter is not above it."""
     workspace = Workspace(Prism.over(TRIANGLE, 30.0, (-200.0, -50.0)), samples=3000)
@@ -44,6 +45,7 @@ def test_share_is_that_of_the_poses_that_need_no_more(fast_robot) -> None:
     assert shares[-1] == 1.0
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("pulley_radius_m", [0.0, 0.4])
 def test_where_nothing_holds_it_is_shown_for_what_serves_most(fast_robot, pulley_radius_m) -> None:
     fast_robot = replace(fast_robot, pulley_radius_m=pulley_radius_m)

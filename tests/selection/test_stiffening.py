@@ -75,6 +75,7 @@ def largest_N(case: LoadCase, cable: Cable, words: str) -> float:
     return float(solve_sagging(one.robot, places, one.cable).largest_tension_N.max())
 
 
+@pytest.mark.slow
 def test_each_case_has_the_stiffness_at_its_own_tension() -> None:
     chosen = chosen_in(POINTS, CASES).chosen
     assert chosen is not None

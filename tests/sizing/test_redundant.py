@@ -51,7 +51,7 @@ def optimality_of(robot, pose, material, diameter_m: float, force_x_N) -> tuple[
     return problem.violation(state, c), problem.gap(state, y, c)
 
 
-@pytest.mark.cases_by_default(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("weights", WEIGHTS)
 def test_random_poses_are_solved_and_optimal(weights) -> None:
     """The conditions are written down and evaluated by other code than the kernel's."""
@@ -198,6 +198,7 @@ def test_no_pose_is_solved_with_a_residual(weights) -> None:
     assert use.max() < 1.0 + 1e-8
 
 
+@pytest.mark.slow
 def test_verdicts_beyond_what_any_section_holds() -> None:
     poses = cogiro_poses(300, 6)
     heavy = steel(100.0)
@@ -242,7 +243,7 @@ def test_a_given_cable_is_pulled_as_evenly_as_can_be(weights) -> None:
 MIXED = Cables(tuple(steel(10.0).cable(0.004 if i % 2 else 0.006) for i in range(8)))
 
 
-@pytest.mark.cases_by_default(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("cable", [steel(30.0).cable(0.004), MIXED], ids=["one", "mixed"])
 def test_a_given_cables_utilisation_cannot_be_lowered(cable) -> None:
     poses = cogiro_poses(4, 12)

@@ -138,6 +138,7 @@ def test_loop_has_no_iterates_outside_the_hull(fast_robot, steel) -> None:
     assert not loop.has_converged
 
 
+@pytest.mark.slow
 def test_every_random_pose_is_solved_or_judged(fast_robot, steel) -> None:
     """The whole uninset prism: no pose without a verdict, no number without its residuals."""
     rng = np.random.default_rng(0)

@@ -29,6 +29,7 @@ def robot(request) -> Robot:
     return request.getfixturevalue(request.param)
 
 
+@pytest.mark.cases_by_default(1)
 def test_solved_poses_close_by_the_papers_equations(robot, steel) -> None:
     statics = solve_sagging(robot, poses_below(robot, 1000, 1), steel.cable(0.03))
     solved = statics.is_solved

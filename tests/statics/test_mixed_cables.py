@@ -60,6 +60,7 @@ def by_quadrature(
     return physics.solve(machine, position, rotation)
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("pulley_radius_m", PULLEYS_M)
 @pytest.mark.parametrize("twin", MACHINES, ids=lambda twin: twin.name)
 def test_lengths_and_tensions_are_those_of_other_physics(twin, pulley_radius_m) -> None:
@@ -143,6 +144,7 @@ def test_the_machine_as_built_changes_each_cable() -> None:
     assert np.array_equal(changed.allowable_tension_N, cables.allowable_tension_N)
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("pulley_radius_m", PULLEYS_M)
 @pytest.mark.parametrize("twin", MACHINES, ids=lambda twin: twin.name)
 def test_cables_that_differ_from_pose_to_pose_are_each_solved_with_their_own(

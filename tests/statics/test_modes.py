@@ -93,6 +93,7 @@ def test_against_finite_elements_that_follow_the_platform(machines, name: str) -
             assert 0.0 < mode.cable_share < 1.0
 
 
+@pytest.mark.slow
 def test_the_whole_system_to_one_per_cent_where_the_cables_are_fast(machines) -> None:
     """All nodes free: as told, our frequencies are too high by the estimate, to second order."""
     robot, cable, poses = machines["cogiro"]

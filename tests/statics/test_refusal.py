@@ -115,6 +115,7 @@ def held_by(robot: Robot, poses: Poses, pull: np.ndarray, weight: float) -> np.n
     return turned.ravel()
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("kind", ["point", "body", "planar", "tilted", "pulleys", "least"])
 def test_what_random_sagging_cables_hold_is_never_refused(kind) -> None:
     """Cables with random pulls, from above and below, slack to taut, hold the load by the way."""
@@ -163,6 +164,7 @@ def test_a_least_tension_moves_the_cone() -> None:
     assert refuse(tight, poses)[0] == [NOT_FOUND]
 
 
+@pytest.mark.slow
 def test_many_cables_are_judged_like_few() -> None:
     """Sixty-four cables round a small platform: no pose is called impossible by a failed solver."""
     rng = np.random.default_rng(4)

@@ -37,6 +37,7 @@ def _ratio(p: float, X: float, drop: float, kappa: float) -> float:
     return float(sag / np.hypot(X, drop))
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("limit", [1e-3, 0.01, 0.05, 0.2, 1.0, 10.0])
 def test_least_pull_is_that_of_the_catenary_and_on_the_safe_side(limit: float) -> None:
     rng = np.random.default_rng(1)
@@ -159,6 +160,7 @@ def can_keep(poses: Poses, cable: Cable, limit: float) -> BoolArray:
     return np.array([feasible(position_m) for position_m in poses.position_m])
 
 
+@pytest.mark.slow
 def test_slack_cables_are_pulled_where_that_holds_and_no_pose_is_lost() -> None:
     poses, cable = four_poses(300, 1), steel(2.0).cable(0.01)
     slack = solve_sagging(FOUR, poses, cable)

@@ -70,6 +70,7 @@ def robots(fast_robot, six_cable_robot) -> dict[str, tuple[Robot, Cable]]:
     }
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("name", ROBOTS)
 def test_against_differences_of_the_balance(robots, name: str) -> None:
     robot, cable = robots[name]

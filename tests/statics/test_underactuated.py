@@ -145,6 +145,7 @@ def test_massless_cables_leave_the_least_squares() -> None:
         assert imbalance(found)[k] == pytest.approx(np.sqrt(left[0]) / HALL4.weight_N, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_heavy_cables_leave_the_least_that_scipy_finds() -> None:
     poses = swaying(12)
     found = solve_underactuated(HALL4, poses, HEAVY)

@@ -7,6 +7,7 @@ from datetime import datetime
 from pathlib import Path
 
 import numpy as np
+import pytest
 import xarray as xr
 from report_parts import pictures, statements, tables
 from sweep_cases import SWEEP, written
@@ -63,6 +64,7 @@ def test_the_front_is_what_nothing_beats() -> None:
     assert pareto_front(values, counts).tolist() == expected.tolist()
 
 
+@pytest.mark.slow
 def test_numbers_and_texts_have_their_place(tmp_path: Path) -> None:
     sweep = SWEEP.replace("[4, 12, 5]", "[4, 12, 5 m]") + "maximise: [pose.limit_ratio]\n"
     sweep = sweep.replace("pose.sagging.status]", "pose.sagging.status, pose.limit_ratio]")

@@ -127,6 +127,7 @@ def test_no_more_is_solved_than_what_is_kept_takes(
     assert why_negative(result) == ""
 
 
+@pytest.mark.slow
 def test_what_is_slow_and_changes_no_answer_is_solved_where_it_is_kept(tmp_path: Path) -> None:
     (tmp_path / "crane.yaml").write_text(STUDY + REGION.partition("selection")[0])
     document = read_document(tmp_path / "crane.yaml")
@@ -210,6 +211,7 @@ class Dying(Executor):
         return future
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("deadly", [(2,), (1, 3, 6)])
 def test_a_worker_that_dies_loses_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, deadly: tuple[int, ...]
@@ -240,6 +242,7 @@ def test_a_point_that_ends_its_process_each_time_does_not_end_the_sweep(
     assert np.isfinite(found["pose.optimum.diameter_m"].values).sum() == 4
 
 
+@pytest.mark.slow
 def test_a_sweep_goes_on_after_what_is_stored(tmp_path: Path) -> None:
     path, target = written(tmp_path), tmp_path / "out.zarr"
     swept(path, tmp_path / "alone.zarr")

@@ -29,6 +29,7 @@ def test_the_contracts_effects_are_there_and_no_other_under_its_names() -> None:
     assert not set(UNLISTED) & CONTRACT
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("robot", ROBOTS.values(), ids=lambda robot: robot.name)
 def test_every_plausible_effect_grows_with_its_size(robot) -> None:
     names = (CONTRACT | set(UNLISTED)) - (

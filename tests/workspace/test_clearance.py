@@ -96,6 +96,7 @@ def replace_cable(statics: Statics, robot: Robot) -> Statics:
     )
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("slack", [-5e-4, 0.01, 0.3])
 def test_true_curves_against_a_finer_and_finer_grid(slack: float) -> None:
     """All pairs of cables of some poses: points on both, closer and closer about the nearest."""
@@ -161,6 +162,7 @@ def boxed(exit_point: list[float]) -> Robot:
     return Robot(frozen_array(exits), Platform(100.0, attachments, hull_m=frozen_array(BOX)))
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("angle_deg", [3.0, 30.0, 60.0])
 def test_a_cable_that_leaves_a_box_at_an_angle(angle_deg: float) -> None:
     slope = np.radians(angle_deg)
@@ -211,6 +213,7 @@ def test_hull_of_the_attachments_flat_and_solid(six_cable_robot) -> None:
     assert platform_hull(Robot(line, Platform(1.0, line))) is None
 
 
+@pytest.mark.slow
 def test_distance_to_the_hull_against_an_optimiser() -> None:
     """Points of each cable against convex combinations of the attachments."""
     rng = np.random.default_rng(5)

@@ -260,6 +260,7 @@ def test_the_papers_workspace(fast_robot, steel) -> None:
     assert found.sagging.position_m[2] == -40
 
 
+@pytest.mark.slow
 def test_the_worst_does_not_depend_on_the_samples(fast_robot, steel) -> None:
     found = [
         map_workspace(fast_robot, paper_workspace(10.35, samples=samples, seed=seed), steel)
@@ -335,6 +336,7 @@ def test_sweep_is_stored_with_units_and_read_back(fast_robot, steel, tmp_path) -
     assert sum(steps) == CHUNK + 100
 
 
+@pytest.mark.slow
 def test_the_search_slides_along_what_does_not_count() -> None:
     """The largest demand lies on a slanted border of what counts, curved and not."""
     box = Space(Prism.box((0, 1), (0, 1), (0, 1)), Orientations())

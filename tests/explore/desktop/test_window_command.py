@@ -27,6 +27,7 @@ def test_a_missing_library_is_told_with_its_remedy(monkeypatch: pytest.MonkeyPat
     assert "pip install 'cdpr-designer[desktop]'" in display.why_no_library()
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems have a display")
 @pytest.mark.parametrize("environment", [{}, {"DISPLAY": ":77"}])
 def test_no_display_is_one_line_and_status_2(environment: dict[str, str]) -> None:
