@@ -18,6 +18,7 @@ class Target(StrEnum):
     CASPR = "caspr"
     MOORDYN = "moordyn"
     MUJOCO = "mujoco"
+    GLTF = "gltf"
     CSV = "csv"
 
 
@@ -40,6 +41,9 @@ def export(
 
     mujoco: an MJCF model: spatial tendons that pull as our cables do, the reference pose and the
     worst one as key frames (.xml). Lost: sag and mass of cables, pulleys.
+
+    gltf: what the report draws in space: robot, platform and cables in the reference pose and the
+    worst one, the region with its maps, a scene each (.glb). Lost: all that is no picture.
 
     Numbers are of the robot as the declared effects have it, at rest under the loads of `robot`,
     with the ropes of the answer. What a study has and a file does not is told here and in the file.
@@ -65,7 +69,7 @@ def export(
     from designer.export.robot import ExportedRobot
 
     with ProgressBars() as bars:
-        exported = ExportedRobot.of(study, catalogue, bars)
+        exported = ExportedRobot.of(study, catalogue, bars, with_maps=kind.needs_maps)
         if kind.needs_ropes and not exported.has_ropes():
             show("No rope serves this study, so there is nothing to cut: see designer report.")
             return False

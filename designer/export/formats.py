@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from designer.export.caspr import to_caspr
+from designer.export.gltf import to_gltf
 from designer.export.moordyn import to_moordyn
 from designer.export.mujoco import to_mujoco
 from designer.export.robot import Export, ExportedRobot
@@ -24,17 +25,21 @@ class Format:
         How the first of them ends.
     needs_cables, needs_ropes : bool
         Whether the design is solved for it, and whether that must come to ropes of a catalogue.
+    needs_maps : bool
+        Whether it shows maps of the workspace.
     """
 
     write: Callable[[ExportedRobot, str], Export]
     ending: str
     needs_cables: bool = True
     needs_ropes: bool = False
+    needs_maps: bool = False
 
 
 FORMATS = {
     "caspr": Format(to_caspr, "_bodies.xml", needs_cables=False),
     "moordyn": Format(to_moordyn, ".txt"),
     "mujoco": Format(to_mujoco, ".xml"),
+    "gltf": Format(to_gltf, ".glb", needs_maps=True),
     "csv": Format(to_csv, ".csv", needs_ropes=True),
 }

@@ -130,7 +130,7 @@ def to_mujoco(exported: ExportedRobot, stem: str) -> Export:
 def _springs(exported: ExportedRobot) -> _Springs:
     robot, study, design = exported.robot, exported.study, exported.design
     assert design is not None
-    pose = exported.worst_pose if study.pose is None else study.pose
+    pose = exported.reference_pose
     stiffness_N = np.broadcast_to(design.cable.axial_stiffness_N, robot.n_cables)
     exits_m = straight_run(robot, pose).exit_points_m @ robot.upright
     straight = replace(robot, exit_points_m=frozen_array(exits_m), pulley_radius_m=0.0)

@@ -58,11 +58,17 @@ class ExportedRobot:
 
     @classmethod
     def of(
-        cls, study: Study, catalogue: Catalogue | None = None, reporter: Reporter = SILENT
+        cls,
+        study: Study,
+        catalogue: Catalogue | None = None,
+        reporter: Reporter = SILENT,
+        *,
+        with_maps: bool = False,
     ) -> ExportedRobot:
         """Return the robot of a study; parameters are those of `designer.analyse`.
 
-        Its answer is not proved: a proof changes no number of it.
+        ``with_maps`` also keeps what maps of the workspace are drawn from. The answer is not
+        proved, which changes no number of it.
 
         Raises
         ------
@@ -71,7 +77,8 @@ class ExportedRobot:
         """
         if study.workspace is not None:
             study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
-        return cls(Analysis.begin(study, catalogue, reporter=reporter, keep=_READ))
+        keep = None if with_maps else _READ
+        return cls(Analysis.begin(study, catalogue, reporter=reporter, keep=keep))
 
     @property
     def study(self) -> Study:
@@ -111,14 +118,36 @@ class ExportedRobot:
         InputError
             If the cables of the design do not hold it.
         """
-        pose = self.study.pose
-        return self._held(self.worst_pose if pose is None else pose, "pose")
+        statics = self._at(self.reference_pose)
+        if not statics.is_solved:
+            assert self.design is not None
+            reason = Verdict(int(statics.verdict)).label
+            problem = f"the robot at rest is not held there by {self.design.name} ({reason})"
+            expected = "a pose in which the cables of the design are in equilibrium"
+            raise InputError([self.study.source.fault("pose", problem, expected)])
+        return statics
 
     @cached_property
     def worst(self) -> Statics | None:
-        """The equilibrium where the cables are used most; None without a workspace."""
-        pose = self.worst_pose
-        return None if self.study.workspace is None else self._held(pose, "workspace")
+        """The equilibrium where the cables are used most; None without a workspace.
+
+        Also None where the platform is not held there at rest, but in a load case alone.
+        """
+        if self.study.workspace is None:
+            return None
+        statics = self._at(self.worst_pose)
+        return statics if statics.is_solved else None
+
+    @property
+    def lost_worst(self) -> list[str]:
+        """A line where the worst pose lacks though there is a workspace."""
+        is_lost = self.study.workspace is not None and self.worst is None
+        return ["the worst pose, in which the platform is not held at rest"] if is_lost else []
+
+    @property
+    def reference_pose(self) -> Poses:
+        """The configured pose or, without one, the worst."""
+        return self.worst_pose if self.study.pose is None else self.study.pose
 
     @property
     def worst_pose(self) -> Poses:
@@ -130,16 +159,9 @@ class ExportedRobot:
         assert analysis.workspace.sagging is not None
         return analysis.workspace.sagging.pose
 
-    def _held(self, pose: Poses, field: str) -> Statics:
-        design = self.design
-        assert design is not None
-        statics = solve_sagging(self.robot, pose, design.cable)
-        if not statics.is_solved:
-            reason = Verdict(int(statics.verdict)).label
-            problem = f"the robot at rest is not held there by {design.name} ({reason})"
-            expected = "a pose in which the cables of the design are in equilibrium"
-            raise InputError([self.study.source.fault(field, problem, expected)])
-        return statics
+    def _at(self, pose: Poses) -> Statics:
+        assert self.design is not None
+        return solve_sagging(self.robot, pose, self.design.cable)
 
     def heading(self, lost: Sequence[str]) -> list[str]:
         """Return the lines that begin a file: where it is from, and what is lost."""

@@ -21,8 +21,9 @@ def to_csv(exported: ExportedRobot, stem: str) -> Export:
     Takes a design that comes to ropes: see `ExportedRobot.has_ropes`.
     """
     analysis, study = exported.analysis, exported.study
-    lost = ["loads of load cases in tensions and lengths at the two poses: there it is at rest"]
-    lost = lost if study.load_cases else []
+    lost = exported.lost_worst
+    if study.load_cases:
+        lost.append("load cases in what holds at the two poses, where the platform is at rest")
     poses = {"reference": exported.reference, "worst": exported.worst}
     rows = [
         _fabrication(exported, cable)

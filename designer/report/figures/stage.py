@@ -198,8 +198,7 @@ class SceneCanvas:
             self.add(banded(counted, steps))
             self.lines(contour_lines(counted, steps), "white", self.pen.contour, 1.0)
         self.add(left_out_surface(field, quantity), palette.LEFT_OUT)
-        failed = quads(field.position_m, _any_corner(field.is_infeasible))
-        self.add(failed, palette.WARNING)
+        self.add(failed_surface(field), palette.WARNING)
 
 
 def counted_surface(field: RegionField, quantity: MapQuantity) -> PolyData:
@@ -219,6 +218,11 @@ def left_out_surface(field: RegionField, quantity: MapQuantity) -> PolyData:
         return blank
     beyond = _surface(field, quantity).clip_scalar(scalars="uplift", invert=False, value=0.0)
     return blank.merge(beyond)
+
+
+def failed_surface(field: RegionField) -> PolyData:
+    """Return the part of a surface (n, m) that nothing was found to hold."""
+    return quads(field.position_m, _any_corner(field.is_infeasible))
 
 
 def banded(surface: PolyData, steps: Steps) -> PolyData:
