@@ -301,9 +301,10 @@ def _label(title: str, place: Sequence[Key]) -> str:
     """Return the title with what tells the values of a list from each other."""
     *names, last = place
     plain = ".".join(key for key in place if isinstance(key, str))
-    is_box = plain.endswith(("box", "hull"))
+    is_range = "wrench_set" in names and isinstance(names[-1], int)
+    is_box = is_range or plain.endswith(("box", "hull"))
     rows = [key + 1 for key in (names[:-1] if is_box else names) if isinstance(key, int)]
-    numbered = f"{title} {rows[0]}" if rows else title
+    numbered = f"{title} {'.'.join(map(str, rows))}" if rows else title
     if isinstance(last, str):
         return numbered
     if is_box:

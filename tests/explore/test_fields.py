@@ -144,3 +144,34 @@ def test_a_slider_of_a_count_reaches_its_value(value: int, low: int, high: int, 
     slider = count_slider(value, low, high, "workspace.samples")
     assert (slider["low"], slider["high"]) == ends
     assert slider["is_log"] == (high > 1000)
+
+
+SETS = """
+name: Crane
+robot:
+  anchors: [[0, 0, 12], [14, 0, 12], [6, 11, 12]]
+  platform: {mass: 60 kg}
+cable: {grade: unirope-6x36-iwrc-1960}
+workspace: {region: {points: [[5, 4, 5]]}}
+load_cases:
+  - {name: a, wrench_set: {force: [[-60, 90], [0, 0], [-900, 250]]}}
+  - {name: b, wrench_set: [{force: [50, 0, -400]}, {force: [-80, 20, 0]}]}
+  - {name: c, region: {points: [[5, 4, 5], [6, 4, 5]]}}
+"""
+
+
+def test_fields_of_lists_in_load_cases_have_names_of_their_own(
+    tmp_path: Path, no_plugins: Plugins
+) -> None:
+    path = tmp_path / "sets.yaml"
+    path.write_text(SETS, encoding="utf-8")
+    session = Session.open(path, no_plugins)
+    label_of = {one.path: one.label for one in session.fields()}
+    title = "Force of the set in load case"
+    assert label_of["load_cases[0].wrench_set.force[2][1]"] == f"{title} 1, z to"
+    assert label_of["load_cases[1].wrench_set[1].force[0]"] == f"{title} 2.2, x"
+    assert label_of["load_cases[2].region.points[1][0]"].endswith(" 3.2, x")
+    assert len(set(label_of.values())) == len(label_of)
+    assert session.edit("load_cases[0].wrench_set.force[2][0]", "-1 kN") == ()
+    (fault,) = session.edit("load_cases[0].wrench_set.force[2][0]", "1 kN")
+    assert "above the upper 250 N" in fault.problem

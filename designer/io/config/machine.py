@@ -374,9 +374,9 @@ class CaseWrenchSection(WrenchSection):
 class ListedWrenchSection(WrenchSection):
     """One of several constant loads of a load case."""
 
-    force: fields.Forces = config_field("Force of a set", (0.0, 0.0, 0.0))
+    force: fields.Forces = config_field("Force of the set in load case", (0.0, 0.0, 0.0))
     """Force on the platform, along the axes of the world frame."""
-    moment: fields.Moments = config_field("Moment of a set", (0.0, 0.0, 0.0))
+    moment: fields.Moments = config_field("Moment of the set in load case", (0.0, 0.0, 0.0))
     """Moment on the platform, along the axes of the world frame."""
 
 
@@ -386,9 +386,9 @@ _NO_RANGES = ((0.0, 0.0), (0.0, 0.0), (0.0, 0.0))
 class WrenchBoxSection(Section):
     """All wrenches whose forces and moments lie between two ends, each for itself."""
 
-    force: fields.ForceRanges = config_field("Range of forces", _NO_RANGES)
+    force: fields.ForceRanges = config_field("Force of the set in load case", _NO_RANGES)
     """From where to where the force reaches along each axis of the world frame."""
-    moment: fields.MomentRanges = config_field("Range of moments", _NO_RANGES)
+    moment: fields.MomentRanges = config_field("Moment of the set in load case", _NO_RANGES)
     """From where to where the moment reaches about each axis of the world frame."""
 
 
