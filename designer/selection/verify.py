@@ -257,7 +257,7 @@ def _meet(
     if gives_up and len(open_rows):  # the pose that refutes most of them first, of all at once
         shared = meets.failed[open_rows] * meets.failed.sum(axis=0)
         lost[open_rows] = shared.argmax(axis=1)
-        tried = Cables([cables[row] for row in open_rows], np.arange(len(open_rows)))
+        tried = Cables([cables[k] for k in open_rows.tolist()], np.arange(len(open_rows)))
         probed = solve_sagging(robot, poses.part(lost[open_rows]), tried, seeks_better=False)
         open_rows = open_rows[probed.is_solved]
     for row in open_rows.tolist():
