@@ -40,7 +40,10 @@ def to_caspr(exported: ExportedRobot, stem: str) -> Export:
     """Return STEM_bodies.xml and STEM_cables.xml; nothing is solved for them."""
     study, space = exported.study, exported.study.workspace
     pose = study.pose
-    lost = ["mass, sag and stretch of cables, and which ropes they are", *lost_by_all(study)]
+    lost = [
+        "mass, sag and stretch of cables, and which ropes they are",
+        *lost_by_all(study, ["tension_max_N"]),
+    ]
     if pose is None:
         assert space is not None
         pose = Poses.at(space.region.bounds_m.mean(axis=0))

@@ -43,10 +43,13 @@ def to_gltf(exported: ExportedRobot, stem: str) -> Export:
     """
     lost = [
         "forces, and figures but for scales and cables; cables are drawn thicker than they are",
+        *exported.lost_of_cables,
         *exported.lost_worst,
         *lost_by_all(exported.study),
     ]
     size_m = _size_m(exported)
+    if exported.robot.platform.hull_m is not None:
+        lost.append("the hull of the platform; drawn is that of its attachments")
     robot = [_balls("exit points", exported.robot.exit_points_m, BALL * size_m, palette.INK)]
     robot += _pose("reference pose", exported.reference, size_m, palette.SAG)
     scenes: dict[str, list[Surface]] = {}

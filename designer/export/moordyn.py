@@ -68,6 +68,7 @@ def to_moordyn(exported: ExportedRobot, stem: str) -> Export:
     attachments_m = robot.attachments_m @ poses.rotation.T
     lost = [
         *_lost(robot, load, down_m),
+        *exported.lost_of_cables,
         *([turned] if turned else []),
         *lost_by_all(exported.study),
     ]
@@ -92,6 +93,8 @@ def _lost(robot: Robot, load: _Load, down_m: float) -> list[str]:
         )
     elif body.wrench_N.any():
         lost.append("the vertical force on the platform as such; it is in its mass here")
+    if body.hull_m is not None:
+        lost.append("the hull of the platform")
     if robot.pulley_radius_m:
         lost.append("pulleys; lines begin where cables leave them in this pose")
     if robot.is_planar:

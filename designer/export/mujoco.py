@@ -149,17 +149,18 @@ def _springs(exported: ExportedRobot) -> _Springs:
 
 
 def _lost(exported: ExportedRobot, springs: _Springs) -> list[str]:
-    robot, design = exported.robot, exported.design
+    robot = exported.robot
     sagging_N = exported.reference.cable_tension_N
     apart = float(np.abs(springs.tension_N - sagging_N).max() / sagging_N.max())
     lost = [
-        "sag and mass of the cables, with what is attached along them: they are straight, and "
-        f"tensions in the reference pose differ by up to {apart:.2%} of the largest",
+        "sag and mass of the cables: they are straight, and tensions in the reference pose "
+        f"differ by up to {apart:.2%} of the largest",
     ]
     if robot.pulley_radius_m:
         lost.append("pulleys; tendons begin where cables leave them in the reference pose")
-    if design is not None and any(rope.cable.stiffening for rope in design.ropes):
-        lost.append("EA that depends on the tension; it is that of the design")
+    lost += exported.lost_of_cables
+    if robot.platform.hull_m is not None:
+        lost.append("the hull of the platform, but for a box around it that touches nothing")
     if not robot.is_point_mass and robot.platform.inertia_kg_m2 is None:
         lost.append("moments of inertia, not in the study: those of a solid box stand in")
     if robot.tension_min_N:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +16,7 @@ from designer.errors import InputError, one_line
 from designer.grades.registry import Catalogue
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
+from designer.model.winches import Winches
 from designer.model.workspace import Workspace
 from designer.progress import SILENT, Reporter
 from designer.selection.qualities import DesignCable
@@ -139,6 +140,19 @@ class ExportedRobot:
         return statics if statics.is_solved else None
 
     @property
+    def lost_of_cables(self) -> list[str]:
+        """What a format that takes cables as springs does not know of those of the design."""
+        design, lost = self.design, []
+        assert design is not None
+        if self.study.selection is not None and not design.ropes:
+            lost.append(f"a rope, as none serves; cables are {design.name}")
+        if any(rope.cable.stiffening for rope in design.ropes):
+            lost.append("EA that depends on the tension; it is that of the largest tension met")
+        if self.robot.attached:
+            lost.append("what is attached along cables, but for its mass where cables have theirs")
+        return lost
+
+    @property
     def lost_worst(self) -> list[str]:
         """A line where the worst pose lacks though there is a workspace."""
         is_lost = self.study.workspace is not None and self.worst is None
@@ -171,11 +185,16 @@ class ExportedRobot:
             f"from {study.source.path.name}" + (f", SHA-256 {sha}" if sha else ""),
             "SI units: m, kg, s, N, rad",
         ]
+        if "design" in self.__dict__ and self.design is not None:  # solved for this format
+            lines.append(f"Cables: {self.design.name}")
         return lines + [f"Not in this file: {line}" for line in lost]
 
 
-def lost_by_all(study: Study) -> list[str]:
-    """Return what no file for a simulation takes of a study, a line each."""
+def lost_by_all(study: Study, taken: Sequence[str] = ()) -> list[str]:
+    """Return what no file for a simulation takes of a study, a line each.
+
+    ``taken`` are fields of `Winches` that this one does take.
+    """
     lost, space = [], study.workspace
     if study.load_cases:
         names = ", ".join(case.name for case in study.load_cases)
@@ -184,8 +203,15 @@ def lost_by_all(study: Study) -> list[str]:
         lost += _lost_of(space)
     if study.selection is not None:
         lost.append("how the rope was chosen, with its limits, its factors of safety and a proof")
-    if study.robot.winches.drum_diameter_m or study.robot.winches.drum:
-        lost.append("drums, gears, motors and sheaves of the winches")
+    winches, plain = study.robot.winches, Winches()
+    changed = [
+        each.name
+        for each in fields(winches)
+        if each.name not in taken
+        and not np.array_equal(getattr(winches, each.name), getattr(plain, each.name))
+    ]
+    if changed:
+        lost.append(f"what the study has of its winches: {', '.join(changed)}")
     if study.measurements is not None:
         lost.append("measured data")
     if study.uncertainty is not None:
