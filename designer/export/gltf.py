@@ -54,7 +54,7 @@ def to_gltf(exported: ExportedRobot, stem: str) -> Export:
     robot += _pose("reference pose", exported.reference, size_m, palette.SAG)
     scenes: dict[str, list[Surface]] = {}
     if exported.worst is not None:
-        robot += _pose("worst pose", exported.worst, size_m, palette.INK)
+        robot += _pose("worst pose", exported.worst, size_m, palette.WARNING)
     if exported.study.workspace is not None:
         for maps, quantity in _maps(exported):
             scenes[quantity.label] = list(_map(maps.thinned(), quantity, size_m))
@@ -99,10 +99,10 @@ def _pose(name: str, statics: Statics, size_m: float, colour: str) -> Iterator[S
     corners_m = statics.poses.attachment_points_m(statics.robot)
     faces = hull_faces(corners_m)
     if len(faces):
-        yield Surface(f"{name}, platform", corners_m[faces], _rgb(palette.MASSLESS))
+        yield Surface(f"{name}, platform", corners_m[faces], _rgb(colour))
     else:
         centre_m = statics.poses.position_m[None]
-        yield _balls(f"{name}, platform", centre_m, 2.0 * BALL * size_m, palette.MASSLESS)
+        yield _balls(f"{name}, platform", centre_m, 2.0 * BALL * size_m, colour)
 
 
 def _map(maps: WorkspaceMaps, quantity: MapQuantity, size_m: float) -> Iterator[Surface]:
