@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -242,7 +243,7 @@ def numbers(*values: float) -> str:
 
 def xml_document(heading: Iterable[str], lines: Iterable[str]) -> bytes:
     """Return an XML file with a comment at its head."""
-    comment = [line.replace("--", "- -") for line in heading]
+    comment = [re.sub("-(?=-)", "- ", line) for line in heading]  # two would end a comment
     first = ['<?xml version="1.0" encoding="utf-8"?>', "<!--", *comment, "-->"]
     return ("\n".join([*first, *lines]) + "\n").encode()
 

@@ -63,7 +63,7 @@ def read_back(folder, study: Study) -> tuple[ForeignRobot, tuple[str, ...]]:
 def test_random_robots_are_read_back(tmp_path, kind: str, seed: int) -> None:
     robot, pose = random_robot(np.random.default_rng([seed, len(kind)]), kind)
     low, high = np.sort(np.random.default_rng(seed).uniform(-5.0, 5.0, (2, 3)), axis=0)
-    study = Study('a <rig> & its "cables"', robot, STEEL, pose=pose)
+    study = Study('a --- <rig> & its "cables"', robot, STEEL, pose=pose)
     if not robot.is_planar:
         box = Prism.box(*zip(low.tolist(), high.tolist(), strict=True))
         study = replace(study, workspace=Workspace(box))
