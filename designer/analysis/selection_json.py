@@ -34,6 +34,7 @@ def selection_dict(selection: SelectionResult | None, choice: GroupChoice | None
     return {
         "objectives": selection.objectives,
         "currency": selection.currency,
+        "price_estimate": selection.price_estimate,
         "chosen": None if chosen is None else rows[chosen],
         "reason": selection.reason,
         "pareto": [rows[c] for c in selection.front],

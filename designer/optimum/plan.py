@@ -23,6 +23,7 @@ from designer.model.rectangle import Rectangle
 from designer.optimum.measures import MEASURES, Measure, for_study, measure_at
 from designer.optimum.variables import Variable, variables_of
 from designer.selection.candidate import common_currency, is_allowed
+from designer.selection.prices import with_prices
 from designer.spelling import did_you_mean
 from designer.study import Study
 from designer.sweep.point import Base, Change, value_at, why_no_value
@@ -277,7 +278,7 @@ def _faults_of_measures(
                 expected = f"{part}: in the study, or another objective"
                 faults.append(document.fault(place, problem, expected))
             elif measure.name == "rope_cost" and not _has_prices(study, base):
-                expected = "grades with price_per_m, or rope_mass"
+                expected = "grades with price_per_m, cost in selection.objectives, or rope_mass"
                 faults.append(document.fault(place, "no grade of the study has prices", expected))
             continue
         try:
@@ -295,6 +296,8 @@ def _faults_of_measures(
 
 
 def _has_prices(study: Study, base: Base) -> bool:
-    named = study.selection.grades if study.selection is not None else None
-    grades = [grade for grade in base.catalogue().grades if is_allowed(grade, named)]
-    return common_currency(grades) is not None
+    if study.selection is None:
+        return False
+    grades, _ = with_prices(base.catalogue().grades, study.selection)
+    allowed = [grade for grade in grades if is_allowed(grade, study.selection.grades)]
+    return common_currency(allowed) is not None

@@ -11,6 +11,7 @@ from designer.model.load_case import STATIC
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.selection.candidate import Candidate
+from designer.selection.prices import PriceEstimate
 from designer.selection.usable import Usable
 from designer.study import Objective
 
@@ -78,7 +79,9 @@ class GradeOutcome:
         if self.best is not None:
             return f"{self.best.size.id} holds everywhere, {need}"
         if self.outcome == "rejected":
-            last = [c for c in self.candidates if c.standing == "rejected"][-1]
+            last = [c for c in self.candidates if c.verification.holds][-1]
+            if last.standing == "not_comparable":
+                return f"holds, but is not compared: {last.reason}"
             return f"has no size that meets every requirement: {last.size.id}, {last.reason}"
         if self.outcome == "no_finite_cable" and self.verdict is Verdict.NO_FINITE_CABLE:
             return "no section of this rope can hold the workspace: its own weight is too much"
@@ -115,6 +118,8 @@ class SelectionResult:
         What candidates were compared by, the one that decides first.
     currency : str or None
         Of the costs; None where nothing has a price.
+    price_estimate : PriceEstimate or None
+        What the prices are, where they are borrowed.
     not_tried : tuple of NotTried
         What was not solved, and why.
     proof : Proof or None
@@ -131,6 +136,7 @@ class SelectionResult:
     alternatives: tuple[GradeOutcome, ...] = ()
     objectives: tuple[Objective, ...] = ("mass",)
     currency: str | None = None
+    price_estimate: PriceEstimate | None = None
     not_tried: tuple[NotTried, ...] = ()
     usable: Usable | None = None
     proof: Proof | None = None

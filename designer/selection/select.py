@@ -43,6 +43,7 @@ from designer.selection.continuous import ContinuousOptimum, continuous_optima
 from designer.selection.criteria import criteria_of
 from designer.selection.efficiency import Allowance
 from designer.selection.objectives import MEANINGS, CandidateFigures
+from designer.selection.prices import with_prices
 from designer.selection.proven import prove_governing
 from designer.selection.requirements import sheave_ratio_of
 from designer.selection.result import GradeOutcome, NotTried, Outcome, SelectionResult
@@ -77,6 +78,7 @@ def select(
     holds in all poses [s]. Without ``explains`` it is not told what a grade comes to (its optimum),
     why nothing is chosen and what would hold then, nor what share the sizes serve.
     """
+    grades, price_estimate = with_prices(grades, selection)
     allowed = [g for g in grades if is_allowed(g, selection.grades)]
     cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
     run = _SelectionRun(
@@ -97,6 +99,7 @@ def select(
         alternatives=tuple(alternatives),
         objectives=selection.objectives,
         currency=run.currency,
+        price_estimate=price_estimate,
         not_tried=tuple(not_tried),
         usable=_usable(robot, workspace, outcomes, chosen) if explains else None,
         proof=None if chosen is None else run.proofs.get(chosen),
@@ -116,6 +119,7 @@ def best_product(
 
     None where nothing holds.
     """
+    grades, _ = with_prices(grades, selection)
     allowed = [g for g in grades if is_allowed(g, selection.grades)]
     cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
     run = _SelectionRun(cases, selection, built or AsBuilt(robot), allowed)
@@ -134,6 +138,7 @@ def at_samples(
 
     Nothing is searched between them; stiffness, which takes long, is not known.
     """
+    grades, _ = with_prices(grades, selection)
     allowed = [g for g in grades if is_allowed(g, selection.grades)]
     quick = tuple(o for o in selection.objectives if o != "stiffness")
     selection = replace(selection, objectives=quick or ("mass",))

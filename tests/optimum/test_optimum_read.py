@@ -163,7 +163,7 @@ def test_a_demand_as_a_variable_is_known_for_one(
 
 def test_a_price_is_asked_of_grades_that_have_none(tmp_path: Path) -> None:
     path = written(tmp_path, OF_YARD.replace("rope_mass", "rope_cost"), YARD)
-    expected = "(expected grades with price_per_m, or rope_mass)"
+    expected = "(expected grades with price_per_m, cost in selection.objectives, or rope_mass)"
     assert lines(path) == [f"2: objective: no grade of the study has prices {expected}"]
 
 

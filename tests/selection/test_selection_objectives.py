@@ -144,6 +144,8 @@ def test_without_a_price_nothing_can_be_the_cheapest(fast_robot, workspace) -> N
     holding = [c for c in found.candidates if c.grade is unpriced and c.verification.holds]
     assert {c.standing for c in holding} == {"not_comparable"}
     assert {c.reason for c in holding} == {"its price is not known"}
+    sentences = {outcome.grade.id: outcome.sentence for outcome in found.outcomes}
+    assert sentences["unpriced"] == "holds, but is not compared: its price is not known"
     none = select(fast_robot, workspace, Selection(None, 2.0, ("cost",)), [unpriced])
     assert none.chosen is None
     assert "price" in (none.reason or "")

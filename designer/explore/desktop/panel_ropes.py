@@ -71,7 +71,13 @@ COLUMNS = (
     _scaled("largest T [kN]", "verification.max_tension_N", 1e-3, 4, "Largest in any cable."),
     _scaled("drum [mm]", "figures.drum_diameter_m", 1e3, 4, "Least diameter of drums and sheaves."),
     _scaled("stiffness [kN/m]", "figures.stiffness_N_per_m", 1e-3, 3, "Least, of the platform."),
-    _scaled("cost", "figures.cost", 1.0, 4, "Of all cables, where the grade has a price."),
+    _scaled(
+        "cost",
+        "figures.cost",
+        1.0,
+        4,
+        "Of all cables; estimated where no grade has a price.",
+    ),
     Column(
         "what became of it",
         attrgetter("reason"),

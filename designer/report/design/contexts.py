@@ -152,6 +152,8 @@ def groups(analysis: Analysis) -> Context | None:
         "choice": choice,
         "decimals_kN": fmt.decimals(p.cable.allowable_tension_N / 1e3 for p in choice.chosen.ropes),
         "most_proposals": _MOST_PROPOSALS,
+        "is_estimated": analysis.selection is not None
+        and analysis.selection.price_estimate is not None,
     }
 
 

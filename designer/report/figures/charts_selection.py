@@ -171,7 +171,10 @@ class _Along:
         values = [c.figures.value(objective) for c in _holding(selection)]
         if unit.startswith("N") and min(values, default=0.0) >= 1e3:
             unit, scale = f"k{unit}", 1e-3
-        return cls(objective, f"{meaning.title} [{unit}]" if unit else meaning.title, scale)
+        title = meaning.title
+        if objective == "cost" and selection.price_estimate is not None:
+            title = f"estimated {title}"
+        return cls(objective, f"{title} [{unit}]" if unit else title, scale)
 
 
 def pareto_chart(selection: SelectionResult) -> str | None:

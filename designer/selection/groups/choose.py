@@ -36,6 +36,7 @@ from designer.selection.groups.result import (
     TriedAssignment,
 )
 from designer.selection.groups.trials import Refutation, Trials, verify_groups
+from designer.selection.prices import with_prices
 from designer.study import CableGroup, Selection
 
 MOST_PROPOSALS = 100
@@ -124,6 +125,7 @@ def choose_groups_of(
     that all assignments are compared with the same ropes: the choice is made again until the
     tension that it meets stays.
     """
+    grades, _ = with_prices(grades, selection)
     allowed = [grade for grade in grades if is_allowed(grade, selection.grades)]
     offered = candidates_of(selection, allowed, built)
     tension_N = math.nan if single is None else single.verification.max_tension_N

@@ -1,0 +1,70 @@
+"""What ropes cost, about, where no grade of a study has a price of its own.
+
+Curves of the price of a metre over the diameter, c₁ d + c₂ d², for mooring ropes (MoorPy,
+library/MoorProps_newCosts.yaml, 2024; OMAE2025-156384). Ropes of machines are sold elsewhere and in
+other lengths, hence the wide interval, which is ours.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+from designer.grades.grade import Grade
+from designer.selection.candidate import is_allowed
+from designer.study import Selection
+
+
+@dataclass(frozen=True, slots=True)
+class PriceEstimate:
+    """Prices that are borrowed: of which year, from where, and what share of them one may pay."""
+
+    currency: str
+    year: int
+    low: float
+    high: float
+    source: str
+
+
+BORROWED = PriceEstimate(
+    "USD", 2024, 0.5, 2.0, "MoorPy, library/MoorProps_newCosts.yaml; OMAE2025-156384"
+)
+_PER_M = {
+    "steel": (258.0, 14_300.0),
+    "polyester": (117.0, 12_700.0),
+    "nylon": (9.84, 14_300.0),
+    "HMPE": (-2_270.0, 110_000.0),
+}
+"""c₁ [USD/m²] and c₂ [USD/m³], by material."""
+_THICK_M = 0.05
+"""Least diameter for a curve that is negative for thin ropes."""
+
+
+def with_prices(
+    grades: Sequence[Grade], selection: Selection
+) -> tuple[Sequence[Grade], PriceEstimate | None]:
+    """Return the grades with borrowed prices, and what these are, where the cost is an objective.
+
+    The grades as they are, and None, where it is not, or where one that the study allows has a
+    price of its own. Materials without a curve stay without a price.
+    """
+    allowed = [grade for grade in grades if is_allowed(grade, selection.grades)]
+    is_priced = any(size.price_per_m is not None for grade in allowed for size in grade.sizes)
+    if "cost" not in selection.objectives or is_priced:
+        return grades, None
+    return [_estimated(grade) for grade in grades], BORROWED
+
+
+@lru_cache(maxsize=1024)  # the same sizes whenever asked: candidates are told apart by them
+def _estimated(grade: Grade) -> Grade:
+    if grade.material not in _PER_M or any(s.price_per_m is not None for s in grade.sizes):
+        return grade
+    linear, square = _PER_M[grade.material]
+    sizes = tuple(
+        replace(size, price_per_m=size.diameter_m * (linear + square * size.diameter_m))
+        if linear > 0.0 or size.diameter_m >= _THICK_M
+        else size
+        for size in grade.sizes
+    )
+    return replace(grade, sizes=sizes, currency=BORROWED.currency)

@@ -1,0 +1,77 @@
+"""Prices where the catalogue has none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from ropes import rope
+
+from designer.grades.grade import Grade
+from designer.model.prism import Prism
+from designer.model.workspace import Workspace
+from designer.selection.prices import BORROWED, with_prices
+from designer.selection.select import best_product, select
+from designer.study import Selection
+
+SIZES = [10.0, 60.0]
+BY_COST = Selection(None, 2.0, ("cost", "mass"))
+
+
+def of(material) -> Grade:
+    return rope(f"{material or 'no'} rope", SIZES, material=material)
+
+
+def prices(grade: Grade) -> list[float | None]:
+    return [size.price_per_m for size in grade.sizes]
+
+
+def test_curves_are_those_of_the_source() -> None:
+    grades, estimate = with_prices([of("steel"), of("HMPE"), of("aramid"), of(None)], BY_COST)
+    assert estimate is BORROWED
+    assert prices(grades[0]) == pytest.approx([258e-2 + 1.43, 258 * 0.06 + 14300 * 0.0036])
+    assert prices(grades[1])[0] is None  # the curve is below zero for thin ropes
+    assert prices(grades[1])[1] == pytest.approx(-2270 * 0.06 + 110000 * 0.0036)
+    assert [grade.currency for grade in grades] == ["USD", "USD", None, None]
+    assert prices(grades[2]) == prices(grades[3]) == [None, None]
+    again, _ = with_prices([of("steel")], BY_COST)
+    assert again[0] is grades[0]
+
+
+def test_a_price_of_its_own_comes_before_all_estimates() -> None:
+    own = rope("own", SIZES, material="steel", price_per_kg=3.0, currency="EUR")
+    catalogue = [of("steel"), own]
+    assert with_prices(catalogue, BY_COST) == (catalogue, None)
+    named = replace(BY_COST, grades=("steel rope",))
+    grades, estimate = with_prices(catalogue, named)
+    assert prices(grades[0])[0] is not None
+    assert estimate is BORROWED
+    assert grades[1] is own
+    assert with_prices(catalogue[:1], Selection(None, 2.0)) == (catalogue[:1], None)
+
+
+def test_the_cheapest_is_chosen_and_said_to_be_estimated(fast_robot) -> None:
+    triangle = fast_robot.exit_points_m[:, :2]
+    workspace = Workspace(Prism.over(triangle, 60.0, (-200.0, -80.0)), samples=100)
+    sizes = [float(d) for d in range(10, 40, 4)]
+    steel, nylon = (
+        rope(name, sizes, material=name, weight=weight)
+        for name, weight in (("steel", 1.0), ("nylon", 1.05))
+    )
+    found = select(fast_robot, workspace, BY_COST, [steel, nylon])
+    assert found.chosen is not None
+    assert (found.currency, found.price_estimate) == ("USD", BORROWED)
+    holding = [c for c in found.candidates if c.verification.holds]
+    assert {c.grade.id for c in holding} == {"steel", "nylon"}
+    assert found.chosen.grade.id == "nylon"  # heavier, but cheaper by the metre
+    price = found.chosen.size.price_per_m
+    assert price is not None
+    length_m = float(found.chosen.verification.longest_m.sum())
+    assert found.chosen.figures.cost == pytest.approx(price * length_m)
+    assert found.chosen.figures.cost == min(c.figures.cost for c in holding)
+    same = best_product(fast_robot, workspace, BY_COST, [steel, nylon])
+    assert same is not None
+    assert same.size.id == found.chosen.size.id
+    by_mass = select(fast_robot, workspace, Selection(None, 2.0, ("mass",)), [steel, nylon])
+    assert by_mass.chosen is not None
+    assert (by_mass.chosen.grade.id, by_mass.price_estimate) == ("steel", None)
