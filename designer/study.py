@@ -311,6 +311,13 @@ class Study:
             raise ValueError("a limit of the platform's frequencies needs its inertia")
 
     @property
+    def unproved(self) -> Study:
+        """The same, of which no proof is tried: it may take its whole budget."""
+        if self.workspace is None:
+            return self
+        return replace(self, workspace=replace(self.workspace, proof_s=0.0))
+
+    @property
     def pose_outside(self) -> str:
         """In what the pose is none of the workspace, as ``lies outside the region``; or empty."""
         if self.pose is None or self.workspace is None:

@@ -120,10 +120,10 @@ def _cable(study: Study, plugins: Plugins, bars: ProgressBars) -> tuple[Cable, s
             strength_N *= min(selection.termination_efficiency, reeving) / selection.safety_factor
         return on_machine.cable(strength_N), "the cable on the machine"
     bars("no measurements.cable is declared: first the rope of the design")
-    assert study.workspace is not None  # the options have been checked
     # Deviations hardly depend on the rope: it is searched for, and not proved.
-    study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
-    qualities = Analysis.begin(study, catalogue_of(study, plugins), reporter=bars).qualities
+    qualities = Analysis.begin(
+        study.unproved, catalogue_of(study, plugins), reporter=bars
+    ).qualities
     if qualities is None or not isinstance(qualities.cable.cable, Cable):
         expected = "{linear_mass: …, axial_stiffness: …}: the design has no single rope"
         raise InputError([study.source.fault("measurements.cable", "is missing", expected)])

@@ -77,10 +77,8 @@ class ExportedRobot:
         InputError
             If the study cannot be answered.
         """
-        if study.workspace is not None:
-            study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
         keep = None if with_maps else _READ
-        return cls(Analysis.begin(study, catalogue, reporter=reporter, keep=keep))
+        return cls(Analysis.begin(study.unproved, catalogue, reporter=reporter, keep=keep))
 
     @property
     def study(self) -> Study:

@@ -60,8 +60,8 @@ class Base:
         if parts <= {"pose", "name"}:
             return size_dict(study, analyse_pose(study), self.keep)
         # A proof may take its whole budget for each of thousands of studies.
-        if "proof" not in parts and study.workspace is not None:
-            study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
+        if "proof" not in parts:
+            study = study.unproved
         return result_part(Analysis.begin(study, self.catalogue(study), keep=self.keep))
 
 
