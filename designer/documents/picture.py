@@ -49,7 +49,10 @@ if kind != "{_SVG}":
         picture.load()
     except Exception:
         sys.exit({_NOT_READABLE})
-import plutoprint
+try:
+    import plutoprint
+except ImportError:
+    sys.exit(0)  # no wheel for this kind of machine: nothing of ours will draw it
 class Nothing(plutoprint.ResourceFetcher):
     def fetch_url(self, url):
         asked.append(url)
