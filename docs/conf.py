@@ -36,7 +36,8 @@ html_sidebars = {"tutorial": []}  # the only page of its section
 html_theme_options = {
     "navigation_with_keys": False,
     "show_prev_next": True,
-    "secondary_sidebar_items": ["page-toc"],
+    # none beside the widest tables
+    "secondary_sidebar_items": {"**": ["page-toc"], "explanation/peers": []},
     "footer_end": [],
 }
 html_math_renderer = "mathml"
