@@ -36,6 +36,7 @@ _SELDOM = {
     "session",  # of logs of several sessions, which no page has
     # Of findings, each of which some studies have.
     *("policy", "depth_m", "inradius_m", "lowest_z_m"),
+    "year",  # of prices that are borrowed
     *(
         "lowest_frequency_Hz",
         "share",
