@@ -56,7 +56,7 @@ def to_caspr(exported: ExportedRobot, stem: str) -> Export:
     if space is not None:
         limits_m = None if turned or space.region.is_discrete else space.region.bounds_m
         lost += _lost_of_region(space.region, limits_m)
-    heading = exported.heading(lost)
+    heading = exported.heading(lost, names_cables=False)
     files = {
         f"{stem}_bodies.xml": xml_document(heading, _bodies(study.name, robot, pose, limits_m)),
         f"{stem}_cables.xml": xml_document(heading, _cables(robot)),

@@ -69,8 +69,8 @@ class ExportedRobot:
     ) -> ExportedRobot:
         """Return the robot of a study; parameters are those of `designer.analyse`.
 
-        ``with_maps`` also keeps what maps of the workspace are drawn from. The answer is not
-        proved, which changes no number of it.
+        ``with_maps`` also keeps what maps of the workspace are drawn from. No proof is tried: where
+        one comes upon a worse pose than the search, a report may choose a thicker rope.
 
         Raises
         ------
@@ -176,15 +176,15 @@ class ExportedRobot:
         assert self.design is not None
         return solve_sagging(self.robot, pose, self.design.cable)
 
-    def heading(self, lost: Sequence[str]) -> list[str]:
-        """Return the lines that begin a file: where it is from, and what is lost."""
+    def heading(self, lost: Sequence[str], *, names_cables: bool = True) -> list[str]:
+        """Return the lines that begin a file: where it is from, its cables, and what is lost."""
         study, sha = self.study, self.study.source.sha256
         lines = [
             f"{one_line(study.name)}, exported by cdpr-designer {__version__}",
             f"from {study.source.path.name}" + (f", SHA-256 {sha}" if sha else ""),
             "SI units: m, kg, s, N, rad",
         ]
-        if "design" in self.__dict__ and self.design is not None:  # solved for this format
+        if names_cables and self.design is not None:
             lines.append(f"Cables: {self.design.name}")
         return lines + [f"Not in this file: {line}" for line in lost]
 

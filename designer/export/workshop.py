@@ -24,6 +24,7 @@ def to_csv(exported: ExportedRobot, stem: str) -> Export:
     lost = exported.lost_worst
     if study.load_cases:
         lost.append("load cases in what holds at the two poses, where the platform is at rest")
+    lost.append("a proof; one that comes upon a worse pose may ask for thicker ropes")
     poses = {"reference": exported.reference, "worst": exported.worst}
     rows = [
         _fabrication(exported, cable)
