@@ -181,7 +181,12 @@ def _summary_of_groups(choice: GroupChoice) -> Iterator[Row]:
     elif choice.saving_kg is not None:
         saving = f", {abs(choice.saving_kg):.4g} kg {'less' if choice.saving_kg > 0.0 else 'more'}"
     gap = "proved least" if choice.proof == "optimal" else f"gap {choice.gap:.2%}"
-    yield "  groups' mass", f"{chosen.total_mass_kg:.4g} kg in all{saving}; {gap}"
+    mass = f"{chosen.total_mass_kg:.4g} kg in all{saving}"
+    if choice.objective == "mass":
+        yield "  groups' mass", f"{mass}; {gap}"
+    else:  # what is proved is told of what was minimised
+        yield "  groups' mass", mass
+        yield "  groups' cost", f"{choice.total:.4g} {choice.unit} in all; {gap}"
 
 
 def print_pose(study: Study, pose: PoseAnalysis) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from designer.arrays import FloatArray, frozen_array
+from designer.cli.tables import _summary_of_groups
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.cable import Cable, Cables
@@ -391,6 +392,10 @@ def test_cost_decides_where_the_study_says_so(fast_robot) -> None:
     longest = choice.chosen.verification.longest_m
     prices = [one.size.price_per_m for one in choice.chosen.ropes]
     assert choice.total == pytest.approx(float(np.dot(prices, longest)))
+    told = dict(_summary_of_groups(choice))
+    assert choice.proof == "optimal"
+    assert told["  groups' cost"] == f"{choice.total:.4g} EUR in all; proved least"
+    assert "proved" not in told["  groups' mass"]
     by_mass = choose_groups(robot, workspace, groups, products)
     assert by_mass.chosen.is_found
     assert by_mass.chosen.total_mass_kg < choice.chosen.total_mass_kg
