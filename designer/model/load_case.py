@@ -136,16 +136,16 @@ class Loaded:
 
     def turned(self, step: float) -> Iterator[Loaded]:
         """Yield the same with wind, inertia force or wrench changed a little: by a step aside."""
-        robot, rest = self.bare[0], (self.lost_cable, self.wrench_N)
+        robot, lost, wrench_N = self.bare[0], self.lost_cable, self.wrench_N
         if self.wind is not None and self.case.searches_wind(robot):
             for along in _aside(self.wind, robot.level[:2], step):
-                yield self.case.under(*self.bare, along, self.inertia, *rest)
+                yield self.case.under(*self.bare, along, self.inertia, lost, wrench_N)
         if self.inertia is not None:
             for along in _aside(self.inertia, free_axes(robot), step):
-                yield self.case.under(*self.bare, self.wind, along, *rest)
-        if self.wrench_N is not None and self.case.wrench_set is not None:
-            for wrench_N in self.case.wrench_set.beside(self.wrench_N, step):
-                yield self.case.under(*self.bare, self.wind, self.inertia, rest[0], wrench_N)
+                yield self.case.under(*self.bare, self.wind, along, lost, wrench_N)
+        if wrench_N is not None and self.case.wrench_set is not None:
+            for other_N in self.case.wrench_set.beside(wrench_N, step):
+                yield self.case.under(*self.bare, self.wind, self.inertia, lost, other_N)
 
     @property
     def growth(self) -> float:

@@ -25,10 +25,10 @@ from designer.model.robot import Poses
 from designer.model.space import Space
 from designer.model.workspace import Workspace
 from designer.progress import SILENT
-from designer.selection.candidate import Candidate, candidates_of, is_allowed, undominated
+from designer.selection.candidate import Candidate, candidates_of, undominated
 from designer.selection.cases import governing
 from designer.selection.criteria import criteria_of
-from designer.selection.prices import with_prices
+from designer.selection.prices import offered
 from designer.selection.requirements import CaseLoads, evaluate
 from designer.selection.screen import Screen
 from designer.selection.select import at_samples
@@ -377,8 +377,7 @@ def promising(study: Study, grades: tuple[Grade, ...]) -> tuple[Grade, ...]:
     """
     if study.selection is None:
         return ()
-    sold, _ = with_prices(grades, study.selection)
-    allowed = [grade for grade in sold if is_allowed(grade, study.selection.grades)]
+    allowed = offered(grades, study.selection)
     candidates = candidates_of(study.selection, allowed, as_built_by(study))
     by_price = "cost" in study.selection.objectives
     unbeaten = undominated(candidates, by_price=by_price, at_any_tension=True)

@@ -22,8 +22,8 @@ from designer.model.prism import Prism
 from designer.model.rectangle import Rectangle
 from designer.optimum.measures import MEASURES, Measure, for_study, measure_at
 from designer.optimum.variables import Variable, variables_of
-from designer.selection.candidate import common_currency, is_allowed
-from designer.selection.prices import with_prices
+from designer.selection.candidate import common_currency
+from designer.selection.prices import offered, with_prices
 from designer.spelling import did_you_mean
 from designer.study import Study
 from designer.sweep.point import Base, Change, value_at, why_no_value
@@ -191,8 +191,11 @@ def read_optimisation(path: Path, with_plugins: bool) -> OptimisationPlan:
         base=base,
         region_stays=fixed != text,
         variables=variables,
-        objective=for_study(objective, study),
-        limits=tuple(replace(limit, measure=for_study(limit.measure, study)) for limit in limits),
+        objective=_as_sold(for_study(objective, study), base),
+        limits=tuple(
+            replace(limit, measure=_as_sold(for_study(limit.measure, study), base))
+            for limit in limits
+        ),
         evaluations=section.budget.evaluations or evaluations,
         time_s=section.budget.time,
         starts=section.starts,
@@ -296,8 +299,15 @@ def _faults_of_measures(
 
 
 def _has_prices(study: Study, base: Base) -> bool:
-    if study.selection is None:
-        return False
-    grades, _ = with_prices(base.catalogue().grades, study.selection)
-    allowed = [grade for grade in grades if is_allowed(grade, study.selection.grades)]
-    return common_currency(allowed) is not None
+    selection = study.selection
+    grades = [] if selection is None else offered(base.catalogue().grades, selection)
+    return common_currency(grades) is not None
+
+
+def _as_sold(measure: Measure, base: Base) -> Measure:
+    """Return a measure whose title says where its prices are borrowed."""
+    selection = base.study().selection
+    if measure.name != "rope_cost" or selection is None:
+        return measure
+    _, estimate = with_prices(base.catalogue().grades, selection)
+    return measure if estimate is None else replace(measure, title=f"estimated {measure.title}")

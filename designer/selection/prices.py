@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from designer.grades.grade import Grade
-from designer.selection.candidate import is_allowed
+from designer.selection.candidate import common_currency, is_allowed
 from designer.study import Selection
 
 
@@ -50,13 +50,18 @@ def with_prices(
     price of its own. Materials without a curve stay without a price.
     """
     allowed = [grade for grade in grades if is_allowed(grade, selection.grades)]
-    is_priced = any(size.price_per_m is not None for grade in allowed for size in grade.sizes)
-    if "cost" not in selection.objectives or is_priced:
+    if "cost" not in selection.objectives or common_currency(allowed) is not None:
         return grades, None
     return [_estimated(grade) for grade in grades], BORROWED
 
 
-@lru_cache(maxsize=1024)  # the same sizes whenever asked: candidates are told apart by them
+def offered(grades: Sequence[Grade], selection: Selection) -> list[Grade]:
+    """Return the grades that a study allows, with the prices that it compares."""
+    sold, _ = with_prices(grades, selection)
+    return [grade for grade in sold if is_allowed(grade, selection.grades)]
+
+
+@lru_cache(maxsize=2**14)  # the same sizes whenever asked: candidates are told apart by them
 def _estimated(grade: Grade) -> Grade:
     if grade.material not in _PER_M or any(s.price_per_m is not None for s in grade.sizes):
         return grade

@@ -43,7 +43,7 @@ from designer.selection.continuous import ContinuousOptimum, continuous_optima
 from designer.selection.criteria import criteria_of
 from designer.selection.efficiency import Allowance
 from designer.selection.objectives import MEANINGS, CandidateFigures
-from designer.selection.prices import with_prices
+from designer.selection.prices import offered, with_prices
 from designer.selection.proven import prove_governing
 from designer.selection.requirements import sheave_ratio_of
 from designer.selection.result import GradeOutcome, NotTried, Outcome, SelectionResult
@@ -119,8 +119,7 @@ def best_product(
 
     None where nothing holds.
     """
-    grades, _ = with_prices(grades, selection)
-    allowed = [g for g in grades if is_allowed(g, selection.grades)]
+    allowed = offered(grades, selection)
     cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
     run = _SelectionRun(cases, selection, built or AsBuilt(robot), allowed)
     front, _ = run.choose(run.sampled(allowed))
@@ -138,8 +137,7 @@ def at_samples(
 
     Nothing is searched between them; stiffness, which takes long, is not known.
     """
-    grades, _ = with_prices(grades, selection)
-    allowed = [g for g in grades if is_allowed(g, selection.grades)]
+    allowed = offered(grades, selection)
     quick = tuple(o for o in selection.objectives if o != "stiffness")
     selection = replace(selection, objectives=quick or ("mass",))
     cases = Cases(built.robot, workspace, tuple(load_cases) or (STATIC,))

@@ -167,6 +167,12 @@ def test_a_price_is_asked_of_grades_that_have_none(tmp_path: Path) -> None:
     assert lines(path) == [f"2: objective: no grade of the study has prices {expected}"]
 
 
+def test_borrowed_prices_are_said_to_be_estimated(tmp_path: Path) -> None:
+    study = YARD.replace("selection: {", "selection: {objectives: [cost, mass], ")
+    plan = plan_of(tmp_path, OF_YARD.replace("rope_mass", "rope_cost"), study)
+    assert plan.objective.title == "estimated price of all ropes"
+
+
 def test_the_shipped_example_reads() -> None:
     plan = read_optimisation(example_file("optimise/yard"), with_plugins=False)
     assert plan.given == (0.0, 0.0, 26.0)

@@ -24,7 +24,7 @@ from designer.model.robot import Robot
 from designer.model.workspace import Workspace
 from designer.progress import SILENT, Reporter
 from designer.selection.assignment import NOT_ASSIGNED, Assignment, GroupVerification
-from designer.selection.candidate import Candidate, candidates_of, is_allowed, priced, undominated
+from designer.selection.candidate import Candidate, candidates_of, priced, undominated
 from designer.selection.groups.balance import balance_at, is_sound
 from designer.selection.groups.blocks import block_by_trial, block_by_weight, is_monotone
 from designer.selection.groups.master import Block, Combination, Guide, Master, alone
@@ -36,7 +36,7 @@ from designer.selection.groups.result import (
     TriedAssignment,
 )
 from designer.selection.groups.trials import Refutation, Trials, verify_groups
-from designer.selection.prices import with_prices
+from designer.selection.prices import offered
 from designer.study import CableGroup, Selection
 
 MOST_PROPOSALS = 100
@@ -125,13 +125,11 @@ def choose_groups_of(
     that all assignments are compared with the same ropes: the choice is made again until the
     tension that it meets stays.
     """
-    grades, _ = with_prices(grades, selection)
-    allowed = [grade for grade in grades if is_allowed(grade, selection.grades)]
-    offered = candidates_of(selection, allowed, built)
+    catalogued = candidates_of(selection, offered(grades, selection), built)
     tension_N = math.nan if single is None else single.verification.max_tension_N
     with reporter.task("groups", MOST_PROPOSALS) as advance:
         for _ in range(_MOST_ROUNDS):
-            products = [replace(c, cable=c.cable.at_tension(tension_N)) for c in offered]
+            products = [replace(c, cable=c.cable.at_tension(tension_N)) for c in catalogued]
             is_single = (c for c in products if single and c.size is single.size)
             choice = choose_groups(
                 built.robot,
