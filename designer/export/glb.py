@@ -52,21 +52,21 @@ def glb(
 
     ``turn`` (3, 3) leads from the frame of the surfaces to one whose z axis points up.
     """
-    builder = _Builder()
+    buffers = _Buffers()
     y_up = np.eye(4)
     y_up[:3, :3] = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]) @ turn
     matrix = y_up.ravel(order="F").tolist()
-    common = builder.group("robot", shared, matrix)
+    common = buffers.group("robot", shared, matrix)
     listed = [
-        {"name": name, "nodes": [common, builder.group(name, surfaces, matrix)]}
+        {"name": name, "nodes": [common, buffers.group(name, surfaces, matrix)]}
         if surfaces
         else {"name": name, "nodes": [common]}
         for name, surfaces in scenes.items()
     ]
-    return builder.file({"asset": {"version": "2.0", **asset}, "scene": 0, "scenes": listed})
+    return buffers.file({"asset": {"version": "2.0", **asset}, "scene": 0, "scenes": listed})
 
 
-class _Builder:
+class _Buffers:
     """Collects nodes, meshes and their bytes."""
 
     def __init__(self) -> None:
