@@ -5,7 +5,9 @@ the wires' tensile grade Rr alone:
 
     F = K d² Rr,    A = C d²,    m = W d²
 
-K, C and W are those of table 1.9 of K. Feyrer, "Wire Ropes: Tension, Endurance, Reliability".
+K, C and W are those of table 1.9 of K. Feyrer, "Wire Ropes: Tension, Endurance, Reliability"; for
+6x7, 6x19, 6x36 and 8x36, and K and C of the M ropes, Drahtseilerei Vornbäumen prints the same. No
+factors were found for 35x7, which is stronger than 34x7, and for ropes of compacted strands.
 Such a grade is nominal: a rope that follows the standard holds at least this, but it is nobody's
 product. Its modulus is not in the standard and is borrowed.
 """
@@ -22,13 +24,10 @@ WIRE_GRADES_MPA = (1570, 1770, 1960, 2160)
 """Tensile grades of the wires [MPa]."""
 
 DIAMETERS_M = tuple(
-    1e-3 * diameter_mm
-    for diameter_mm in (
-        *(6, 7, 8, 9, 10, 11, 12, 13, 14, 16, 18, 19, 20, 22, 24, 26, 28, 32, 35, 36, 38, 40),
-        *(44, 48, 52, 56, 60),
-    )
+    1e-3 * diameter_mm for diameter_mm in (*range(6, 21), *range(22, 35, 2), 35, *range(36, 61, 2))
 )
-"""Metric diameters of API Spec 9A (ISO 10425), table C.1, to 40 mm; from there every 4 mm [m]."""
+"""Metric diameters: each of API Spec 9A (ISO 10425), table C.1, and of the makers' tables in the
+catalogue, which have every millimetre to 20 mm and every second one from there [m]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,6 +35,7 @@ def _grade(construction: str, core: str, wire_grade_MPa: int) -> Grade:
         ("6x19M", "FC", 1770, [(6, 19.6), (12, 78.3)]),
         ("6x19M", "IWRC", 1960, [(6, 23.4), (12, 93.7)]),
         ("8x19", "IWRC", 1960, [(8, 44.7), (11, 84.4)]),
+        ("6x36 WS", "IWRC", 1960, [(15, 157.0), (17, 201.65)]),
     ],
 )
 def test_breaking_forces_are_those_of_printed_tables(construction, core, wire_grade, printed):
@@ -126,5 +127,6 @@ def test_a_wire_grade_that_the_standard_does_not_know_is_refused():
         standard_rope(FACTORS[0], 1965)
 
 
-def test_the_preferred_diameters_ascend():
-    assert all(thin < thick for thin, thick in pairwise(DIAMETERS_M))
+def test_the_preferred_diameters_ascend_in_small_steps():
+    assert all(thin < thick < 1.17 * thin for thin, thick in pairwise(DIAMETERS_M))
+    assert {1e-3 * mm for mm in (15, 34, 35, 42, 46)} <= set(DIAMETERS_M)
