@@ -57,6 +57,7 @@ RopeMaterial = Literal[
 ]
 
 MOST_SIZES = 500
+_STRAND = re.compile(r"\b1\s*[x×]\s*\d|spiral|locked|\brod\b|\bsolid\b", re.IGNORECASE)
 TYPICAL_LOAD_FRACTION = 0.2
 """Load over breaking load at a safety factor of 5; what stiffness is shown at without a study, and
 what a search for the tension that a rope meets starts from."""
@@ -251,13 +252,18 @@ class Grade(GradeSheet):
         return "not stated" if self.material in (None, "other") else "fibre"
 
     @property
+    def is_strand(self) -> bool:
+        """Whether it is one strand by its construction: of wires, locked coil, or a rod."""
+        return _STRAND.search(self.construction) is not None
+
+    @property
     def why_only_by_name(self) -> str | None:
         """Why a selection takes this grade only where the study names it; None for others."""
         if self.is_nominal:
             return (
                 "computed from the factors of a standard, no product; taken where a study names it"
             )
-        if re.match(r"1\s*[x×]\s*\d", self.construction):
+        if self.is_strand:
             return "a single strand, made for stays and not for drums; taken where a study names it"
         return None
 

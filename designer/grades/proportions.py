@@ -90,7 +90,7 @@ def bounds_of(grade: Grade) -> Bounds:
     """Return the bounds of the grade's material; wide ones where it is not known."""
     wide = Bounds((200.0, 9000.0), (2e7, 3e9), (0.5, 1000.0), outlier=0.25)
     bounds = BOUNDS.get(grade.material or "", wide)
-    if bounds is _WIRE and _is_strand(grade):
+    if bounds is _WIRE and grade.is_strand:
         return _STRAND
     return bounds
 
@@ -101,12 +101,7 @@ def metallic_modulus_bounds_Pa(grade: Grade) -> tuple[float, float] | None:
     if interval is None:
         return None
     laid_twice, strand = interval
-    return strand if _is_strand(grade) else laid_twice
-
-
-def _is_strand(grade: Grade) -> bool:
-    strand = r"\b1x\d|spiral|locked|\brod\b|\bsolid\b"
-    return re.search(strand, grade.construction, re.IGNORECASE) is not None
+    return strand if grade.is_strand else laid_twice
 
 
 LARGEST_FACTOR_OF_DOUBT = 1.6

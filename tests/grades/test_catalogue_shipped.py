@@ -91,6 +91,14 @@ def test_loading_reports_no_two_grades_with_the_same_table(catalogue):
         ("unirope-24x7-compacted-2160", "13 mm", (13.0, 145_000.0, 0.71)),
         ("metalico-1x7-messenger-utilities", "3/8 in", (9.525, 4898 * 9.80665, 0.407)),
         ("samson-amsteel-blue-hmpe", "3 mm", (3.0, 1000 * 9.80665, 0.0074)),
+        ("unirope-8x19s-compacted-2160", "10 mm", (10.0, 76_900.0, 0.31 * _LB_PER_FT)),
+        ("unirope-compac8-2160", "16 mm", (16.0, 250_700.0, 0.82 * _LB_PER_FT)),
+        ("astm-a475-1x7-extra-high-strength", "1/4 in", (6.35, 29_581.0, 0.121 * _LB_PER_FT)),
+        ("astm-a586-helical-strand-a", "3/4 in", (19.05, 68_000 * _LBF_N, 1.18 * _LB_PER_FT)),
+        ("hendrik-veder-hmpe", "46 mm", (46.0, 1_618_600.0, 1.11)),
+        ("liros-tsl-aramid", "TSL 380", (2.2, 3800.0, 0.00346)),
+        ("liros-dsl-hmpe", "DSL 350", (2.0, 3500.0, 0.00325)),
+        ("edelrid-a8001-aramid", "A-8001-470", (2.2, 4700.0, 0.0028)),
     ],
 )
 def test_spot_figures(catalogue, grade_id, size_id, figures):
