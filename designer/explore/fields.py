@@ -311,7 +311,8 @@ def _label(title: str, place: Sequence[Key]) -> str:
         return f"{numbered}, {_AXES[int(names[-1])]} {_ENDS[last]}"
     if plain.endswith((".z", ".rx", ".ry", ".rz")):
         return f"{numbered}, {_ENDS[last]}"
-    part = str(last + 1) if plain.endswith("angles") else _AXES[last] if last < 3 else str(last)
+    is_numbered = plain.endswith(("angles", "tension_max"))
+    part = str(last + 1) if is_numbered else _AXES[last] if last < 3 else str(last)
     return f"{numbered}, {part}"
 
 

@@ -119,17 +119,15 @@ def _angles_rad(pose: Poses, count: int) -> list[float]:
 
 
 def _cables(robot: Robot) -> Iterator[str]:
-    limit_N = robot.winches.tension_max_N
-    properties = (
-        f"<properties><force_min>{numbers(robot.tension_min_N)}</force_min>"
-        f"<force_max>{'Inf' if limit_N is None else numbers(limit_N)}</force_max></properties>"
-    )
+    limits_N = robot.winches.largest_tensions_N(robot.n_cables).tolist()
     yield '<cables default_cable_set="main">'
     yield '<cable_set id="main">'
-    rows = zip(robot.exit_points_m, robot.attachments_m, strict=True)
-    for number, (exit_m, attachment_m) in enumerate(rows, start=1):
+    rows = zip(robot.exit_points_m, robot.attachments_m, limits_N, strict=True)
+    for number, (exit_m, attachment_m, limit_N) in enumerate(rows, start=1):
         yield f'<cable_ideal name="cable {number}" attachment_reference="joint">'
-        yield properties
+        limit = "Inf" if np.isinf(limit_N) else numbers(limit_N)
+        yield f"<properties><force_min>{numbers(robot.tension_min_N)}</force_min>"
+        yield f"<force_max>{limit}</force_max></properties>"
         yield f"<attachments>{_exit(exit_m, robot.pulley_radius_m)}"
         yield f"{_attachment(1, attachment_m)}</attachments>"
         yield "</cable_ideal>"

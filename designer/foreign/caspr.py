@@ -254,17 +254,23 @@ def _pulley_radius(cable_set: Element, remarks: Remarks) -> float | None:
     return None
 
 
-def _tension_limits(cable_set: Element, remarks: Remarks) -> tuple[float, float | None]:
-    """Return the limits that hold for all cables, where those of the file differ the narrowest."""
-    limits: dict[str, set[float]] = {"force_min": set(), "force_max": set()}
-    for cable in _cables(cable_set):
-        for name, values in limits.items():
-            element = cable.find("properties", name)
-            if element is not None and element.text.strip().lower() != NO_LIMIT:
-                values.update(element.numbers(1))
-    least, largest = limits["force_min"], {force for force in limits["force_max"] if force > 0.0}
-    if len(least) > 1:
+def _tension_limits(
+    cable_set: Element, remarks: Remarks
+) -> tuple[float, float | tuple[float | None, ...] | None]:
+    """Return the least tension of all cables, and the largest of all or of each."""
+    least, largest = (
+        [_force(cable, name) for cable in _cables(cable_set)] for name in ("force_min", "force_max")
+    )
+    given = {force for force in least if force is not None}
+    if len(given) > 1:
         remarks["robot.tension_min"] = ("The file's cables differ; this is the largest.",)
-    if len(largest) > 1:
-        remarks["robot.winches"] = ("The file's cables differ; this is the smallest.",)
-    return max((0.0, *least)), min(largest, default=None)
+    each = tuple(None if force is None or force <= 0.0 else force for force in largest)
+    return max((0.0, *given)), each if len(set(each)) > 1 else each[0]
+
+
+def _force(cable: Element, name: str) -> float | None:
+    """Return a limit of a cable's tension; None where the file has none."""
+    element = cable.find("properties", name)
+    if element is None or element.text.strip().lower() == NO_LIMIT:
+        return None
+    return element.numbers(1)[0]

@@ -45,8 +45,8 @@ class ForeignRobot:
         From where to where it may move, along x, y and z [m].
     tension_min_N : float
         Least tension of a cable [N].
-    tension_max_N : float or None
-        Largest tension of a cable [N].
+    tension_max_N : float, tuple of float or None, or None
+        Largest tension of all cables or, where they differ, of each; None for no limit [N].
     pulley_radius_m : float or None
         Of pulleys that a study can have at the exit points [m].
     rope : ForeignRope or None
@@ -67,7 +67,7 @@ class ForeignRobot:
     euler_xyz_rad: Point | None = ORIGIN
     limits_m: tuple[tuple[float, float], ...] | None = None
     tension_min_N: float = 0.0
-    tension_max_N: float | None = None
+    tension_max_N: float | tuple[float | None, ...] | None = None
     pulley_radius_m: float | None = None
     rope: ForeignRope | None = None
     remarks: Remarks = field(default_factory=dict)

@@ -138,11 +138,14 @@ def _robot(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:
 
 def _winches(robot: ForeignRobot, *, has_workspace: bool) -> Iterator[str]:
     """Yield the largest tension, commented out where the study has no poses to hold it in."""
-    if robot.tension_max_N is None:
+    largest = robot.tension_max_N
+    if largest is None:
         return
-    yield from _remarks(robot, "robot.winches", "  ")
+    each = largest if isinstance(largest, tuple) else (largest,)
+    written = ["null" if limit is None else format_SI(limit, FORCE) for limit in each]
+    value = f"[{', '.join(written)}]" if isinstance(largest, tuple) else written[0]
     mark = "" if has_workspace else "# "
-    yield f"  {mark}winches: {{tension_max: {format_SI(robot.tension_max_N, FORCE)}}}"
+    yield f"  {mark}winches: {{tension_max: {value}}}"
     if not has_workspace:
         yield "  #   is held against all poses of a workspace."
 

@@ -129,6 +129,9 @@ class Robot:
         positions_m = self.winches.positions_m
         if positions_m is not None and len(positions_m) != self.n_cables:
             raise ValueError(f"{len(positions_m)} winches for {self.n_cables} exit points")
+        largest_N = self.winches.tension_max_N
+        if isinstance(largest_N, np.ndarray) and len(largest_N) != self.n_cables:
+            raise ValueError(f"{len(largest_N)} largest tensions of {self.n_cables} winches")
         if len(self.attached) not in (0, 1, self.n_cables):
             raise ValueError(f"{len(self.attached)} lines along {self.n_cables} cables")
 

@@ -1,8 +1,9 @@
-"""The winches of a robot, one for each cable and all alike."""
+"""The winches of a robot, one for each cable and all alike but for the largest tension."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
@@ -17,8 +18,9 @@ class Winches(checked.Value):
 
     Parameters
     ----------
-    tension_max_N : float or None
-        Largest tension that a winch may see, where its cable leaves toward the platform [N].
+    tension_max_N : float, array (n_cables,) or None
+        Largest tension that a winch may see, where its cable leaves toward the platform, of all or
+        of each; infinite for one without a limit [N].
     positions_m : array (n_cables, 3) or None
         Where each cable comes from to its exit point: its winch, or the last sheave before that,
         world frame [m].
@@ -43,7 +45,9 @@ class Winches(checked.Value):
         Between exit point and drum, that at the exit point among them.
     """
 
-    tension_max_N: checked.Positive | None = None
+    tension_max_N: Annotated[float | FloatArray, checked.Number(above=0.0, finite=False)] | None = (
+        None
+    )
     positions_m: checked.Points | None = None
     drum_diameter_m: checked.Positive | None = None
     layers: checked.Count = 1
@@ -61,6 +65,11 @@ class Winches(checked.Value):
     def reeving_efficiency(self) -> float:
         """Of all sheaves of a cable together, η_s to the power of their number."""
         return float(self.sheave_efficiency**self.sheaves)
+
+    def largest_tensions_N(self, n_cables: int) -> FloatArray:
+        """Return the largest tension of each winch (n_cables,), infinite where it has no limit."""
+        largest_N = np.inf if self.tension_max_N is None else self.tension_max_N
+        return np.broadcast_to(largest_N, n_cables)
 
     def drum_tension_N(
         self, tension_N: FloatArray, is_driven: BoolArray | bool = False
@@ -93,6 +102,9 @@ class Winches(checked.Value):
 
     def without(self, cable: int) -> Winches:
         """Return the winches without that of one cable, counted from 1."""
-        if self.positions_m is None:
-            return self
-        return replace(self, positions_m=frozen_array(np.delete(self.positions_m, cable - 1, 0)))
+        positions_m, tension_max_N = self.positions_m, self.tension_max_N
+        if positions_m is not None:
+            positions_m = frozen_array(np.delete(positions_m, cable - 1, 0))
+        if isinstance(tension_max_N, np.ndarray):
+            tension_max_N = frozen_array(np.delete(tension_max_N, cable - 1))
+        return replace(self, positions_m=positions_m, tension_max_N=tension_max_N)

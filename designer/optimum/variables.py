@@ -130,7 +130,8 @@ def demand_sense(keys: tuple[Key, ...]) -> int | None:
     is_asked = keys[0] in _ASKED and keys[:2] not in _OF_ROBOT
     is_asked |= keys[0] == "robot" and any(keys[1 : 1 + len(k)] == k for k in _ASKED_OF_ROBOT)
     is_asked |= keys == ("cable", "safety_factor")
-    return _SENSES.get(str(keys[-1]), 0) if is_asked else None
+    is_of_a_winch = keys[:3] == ("robot", "winches", "tension_max")  # a list has one for each
+    return _SENSES.get(str(keys[2 if is_of_a_winch else -1]), 0) if is_asked else None
 
 
 _SPEC = (

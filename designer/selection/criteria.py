@@ -50,6 +50,11 @@ class Criterion:
         Whether it is asked of the state after the loss of a cable as well.
     detail : callable or None
         Returns what to know of it there, such as between what a distance is, of equilibria (1,).
+    capacity : callable or None
+        Returns what the quantity is a share of, of each cable (n_cables,) [unit]; None where it is
+        in that unit itself.
+    why_open : callable or None
+        Returns why it is not known to fail where it does not hold there; empty where it fails.
     """
 
     id: str
@@ -63,6 +68,8 @@ class Criterion:
     has_ratio: bool = True
     at_rest_after_loss: bool = False
     detail: Callable[[Loaded, Statics], str] | None = None
+    capacity: Callable[[Statics], FloatArray] | None = None
+    why_open: Callable[[Statics], str] = lambda _: ""
 
     def severity(self, quantity: FloatArray) -> FloatArray:
         """Return what grows as the quantity comes nearer to failing, NaN where that is NaN."""
@@ -148,13 +155,15 @@ def _of_winches(winches: Winches) -> Iterator[Criterion]:
         yield Criterion(
             id="winch_tension",
             title="Winch",
-            formula=f"largest tension of a cable at its exit point{losses} ≤ that of a winch",
+            formula=f"largest tension of a cable at its exit point{losses} ≤ that of its winch",
             source=f"robot.winches.tension_max; {WHERE}",
             unit="N",
-            quantity=lambda _, statics: winches.drum_tension_N(statics.exit_tension_N),
-            limits=(winches.tension_max_N,),
+            quantity=_share_of_winch,
+            limits=(1.0,),
             kind="at_most",
             at_rest_after_loss=True,  # brakes have to hold it as well
+            capacity=_winch_capacity_N,
+            why_open=_why_other_tensions_may_do,
         )
     if winches.motor_torque_Nm is not None:
         yield Criterion(
@@ -168,6 +177,26 @@ def _of_winches(winches: Winches) -> Iterator[Criterion]:
             limits=(winches.motor_torque_Nm,),
             kind="at_most",
         )
+
+
+def _winch_capacity_N(statics: Statics) -> FloatArray:
+    """Return the largest tension of each winch (n_cables,), NaN where it has no limit [N]."""
+    largest_N = statics.robot.winches.largest_tensions_N(statics.robot.n_cables)
+    return np.where(np.isinf(largest_N), np.nan, largest_N)
+
+
+def _share_of_winch(_: Loaded, statics: Statics) -> FloatArray:
+    """Return tension over the largest of the winch (n, n_cables), NaN where it has no limit."""
+    drum_tension_N = statics.robot.winches.drum_tension_N(statics.exit_tension_N)
+    return np.asarray(drum_tension_N / _winch_capacity_N(statics))
+
+
+def _why_other_tensions_may_do(statics: Statics) -> str:
+    """Return why winches that differ may do with other internal forces; empty where not."""
+    differ = isinstance(statics.robot.winches.tension_max_N, np.ndarray)
+    if not (differ and statics.robot.is_redundant):
+        return ""
+    return "tensions are chosen for the ropes; others may suit winches that differ"
 
 
 def _motor_torque_Nm(loaded: Loaded, statics: Statics) -> FloatArray:

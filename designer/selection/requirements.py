@@ -236,6 +236,11 @@ def _requirement(
     """Return a criterion at a place, of its quantity (n_cables,) or (1,) and equilibria (1,)."""
     column = int(np.nanargmax(criterion.severity(quantity)))
     demand, capacity, used, holds = criterion.figures(float(quantity[column]))
+    if criterion.capacity is not None:
+        unit = float(criterion.capacity(statics)[column])
+        demand, capacity = demand * unit, capacity * unit
+    remark = "" if criterion.detail is None else criterion.detail(loaded, statics)
+    why_open = "" if holds else criterion.why_open(statics)
     every = np.arange(1, loaded.robot.n_cables + 1)
     cables = every[every != loaded.lost_cable]
     return Requirement(
@@ -243,7 +248,7 @@ def _requirement(
         title=criterion.title,
         formula=criterion.formula,
         source=criterion.source,
-        state=State.HOLDS if holds else State.FAILS,
+        state=State.HOLDS if holds else State.OPEN if why_open else State.FAILS,
         load_case=loaded.case.name,
         demand=demand,
         capacity=capacity,
@@ -252,7 +257,7 @@ def _requirement(
         cable=int(cables[column]) if len(quantity) == len(cables) > 1 else None,
         place=place,
         loaded=loaded,
-        remark="" if criterion.detail is None else criterion.detail(loaded, statics),
+        remark=remark or why_open,
     )
 
 

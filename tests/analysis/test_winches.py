@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from pairs.agreement import Situation, ropes_of
 from pairs.options import BASES
 from pairs.reference import Pose, solve
@@ -14,7 +15,7 @@ from pairs.table import analysed
 
 from designer.analysis.analyse import Analysis
 from designer.explore.session import Session
-from designer.model.requirement import Answer
+from designer.model.requirement import Answer, Requirement, State
 from designer.plugins.find import find_plugins
 from designer.resources import example_file
 
@@ -50,6 +51,53 @@ def test_largest_tension_at_exit_points(tmp_path: Path) -> None:
     assert winch.cable == pull_N.argmax() + 1
     assert max(exit_N) <= winch.demand
     assert winch.utilisation == pytest.approx(winch.demand / 2500.0)
+
+
+@pytest.mark.parametrize("lost", [None, 3])
+def test_largest_tension_of_each_winch(tmp_path: Path, lost: int | None) -> None:
+    largest = [np.inf, 2500.0, 400.0]
+    study = crane(winches={"tension_max": [None, *largest[1:]], "sheave_efficiency": 0.9})
+    study["workspace"] |= {"hangs_below": "include"}
+    if lost is not None:
+        study |= {"load_cases": [{"name": "loss", "cable_lost": lost}]}
+        del largest[lost - 1]
+    analysis = analysed(study, tmp_path)
+    (winch,) = (each for each in analysis.requirements if each.id == "winch_tension")
+    assert winch.place is not None and winch.cable is not None
+    column = winch.cable - 1
+    assert winch.capacity == pytest.approx(largest[column])
+    assert winch.utilisation == pytest.approx(winch.demand / winch.capacity)
+    if lost is not None:  # the platform settles elsewhere
+        assert winch.cable == 2
+        return
+    shares = [
+        np.linalg.norm(state.exit_pull_N, axis=1) / 0.9 / largest
+        for state in states(study, analysis)
+    ]
+    assert winch.utilisation >= np.max(shares)
+    there = solve(Situation(study, ropes_of(analysis), {}).problem, Pose(winch.place))
+    pull_N = np.linalg.norm(there.exit_pull_N, axis=1) / 0.9
+    assert winch.demand == pytest.approx(pull_N[column], rel=1e-6)
+    assert column == (pull_N / largest).argmax()
+
+
+def test_other_tensions_may_suit_winches_that_differ(tmp_path: Path) -> None:
+    base = BASES["four"]
+    study = base | {"robot": base["robot"] | {"winches": {"tension_max": 1e6}}}
+    (alike,) = _winch_of(study, tmp_path)
+    each = [1e6] * len(base["robot"]["anchors"])
+    assert alike.cable is not None
+    each[alike.cable - 1] = 0.9 * alike.demand
+    study["robot"]["winches"] = {"tension_max": each}
+    (winch,) = _winch_of(study, tmp_path)
+    assert winch.state is State.OPEN
+    assert "others may suit winches that differ" in winch.remark
+    study["robot"]["winches"] = {"tension_max": 0.9 * alike.demand}
+    assert _winch_of(study, tmp_path)[0].state is State.FAILS
+
+
+def _winch_of(study: Study, folder: Path) -> list[Requirement]:
+    return [each for each in analysed(study, folder).requirements if each.id == "winch_tension"]
 
 
 def test_torque_of_the_motors(tmp_path: Path) -> None:
@@ -97,3 +145,14 @@ def test_window_offers_winches() -> None:
     assert "robot.winches.tension_max" in [field.path for field in session.fields()]
     session.edit("robot.winches.tension_max", "5 kN")
     assert session.question().study.robot.winches.tension_max_N == 5000.0
+
+
+def test_window_edits_the_largest_tension_of_one_winch(tmp_path: Path) -> None:
+    file = tmp_path / "crane.yaml"
+    file.write_text(yaml.safe_dump(crane(winches={"tension_max": [900.0, None, 700.0]})))
+    session = Session.open(file, find_plugins(with_plugins=False))
+    labels = {each.path: each.label for each in session.fields()}
+    assert labels["robot.winches.tension_max[2]"] == "Largest tension of a winch, 3"
+    session.edit("robot.winches.tension_max[1]", "5 kN")
+    largest_N = session.question().study.robot.winches.tension_max_N
+    assert np.array_equal(largest_N, [900.0, 5000.0, 700.0])

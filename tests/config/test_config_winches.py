@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from designer.errors import Fault
+from designer.model.winches import Winches
 from designer.study import Study
 
 STUDY = """\
@@ -21,6 +24,20 @@ def test_winches_with_units(study_of: Callable[[str], Study]) -> None:
     assert winches.tension_max_N == pytest.approx(5000.0)
 
 
+def test_largest_tension_of_each_winch(study_of: Callable[[str], Study]) -> None:
+    robot = study_of(STUDY % "tension_max: [5 kN, null, 4000]" + WORKSPACE).robot
+    assert np.array_equal(robot.winches.tension_max_N, [5000.0, np.inf, 4000.0])
+    assert np.array_equal(robot.without_cable(1).winches.tension_max_N, [np.inf, 4000.0])
+    alike = study_of(STUDY % "tension_max: [5 kN, 5000, 5 kN]" + WORKSPACE).robot.winches
+    assert alike.tension_max_N == 5000.0
+    none = study_of(STUDY % "tension_max: [null, null, null]" + WORKSPACE).robot.winches
+    assert none.tension_max_N is None
+    with pytest.raises(ValueError, match="2 largest tensions of 3 winches"):
+        replace(robot, winches=replace(robot.winches, tension_max_N=np.array([1.0, 2.0])))
+    with pytest.raises(ValueError, match="tension_max_N must be above 0"):
+        Winches(tension_max_N=np.array([1.0, -2.0, np.inf]))
+
+
 def test_winches_need_a_workspace(faults_of: Callable[[str], list[Fault]]) -> None:
     (fault,) = faults_of(STUDY % "tension_max: 5 kN" + "pose: [4, 4, 2]\n")
     assert (fault.line, fault.field) == (1, "robot.winches")
@@ -32,7 +49,11 @@ def test_winches_need_a_workspace(faults_of: Callable[[str], list[Fault]]) -> No
     [
         ("tension_max: 0", "tension_max", "0 is out of range"),
         ("tension_max: 3 m", "tension_max", "has the unit meter"),
-        ("tension_max: [1 kN, 2 kN]", "tension_max", "a list is not a number"),
+        ("tension_max: [1 kN, 2 kN]", "tension_max", "2 tensions for 3 anchors"),
+        ("tension_max: [1 kN]", "tension_max", "1 value"),
+        ("tension_max: [1 kN, 0, 2 kN]", "tension_max[1]", "0 is out of range"),
+        ("tension_max: [1 kN, 2 kN, 3 m]", "tension_max[2]", "has the unit meter"),
+        ("tension_max: {1: 1 kN}", "tension_max", "a mapping"),
         ("sheave_efficiency: 0", "sheave_efficiency", "0 is out of range"),
         ("sheave_efficiency: 1.02", "sheave_efficiency", "1.02 is out of range"),
         ("sheave_efficiency: 0.96 m", "sheave_efficiency", "has the unit meter"),

@@ -45,9 +45,17 @@ def random_robot(rng: np.random.Generator, kind: str) -> tuple[Robot, Poses]:
         pulley_radius_m=float(rng.choice([0.0, 0.07])),
         tension_min_N=float(rng.uniform(0.0, 900.0)) if n_cables > freedoms else 0.0,
         is_planar=is_planar,
-        winches=Winches(tension_max_N=rng.choice([None, 12345.678])),
+        winches=Winches(tension_max_N=_tension_max_N(rng, n_cables)),
     )
     return robot, Poses.at(position, np.zeros(3) if is_point else turn)
+
+
+def _tension_max_N(rng: np.random.Generator, n_cables: int) -> np.ndarray | float | None:
+    """Return no limit, one for all winches, or one for each but the last."""
+    kind = rng.integers(3)
+    return (
+        [None, 12345.678][kind] if kind < 2 else np.append(rng.uniform(9, 99, n_cables - 1), np.inf)
+    )
 
 
 def read_back(folder, study: Study) -> tuple[ForeignRobot, tuple[str, ...]]:
@@ -81,7 +89,10 @@ def test_random_robots_are_read_back(tmp_path, kind: str, seed: int) -> None:
     assert same.plane_normal == ((0.0, 1.0, 0.0) if robot.is_planar else None)
     assert np.array_equal(same.position_m, pose.position_m)
     assert same.tension_min_N == robot.tension_min_N
-    assert same.tension_max_N == robot.winches.tension_max_N
+    limits_N = robot.winches.tension_max_N
+    if isinstance(limits_N, np.ndarray):
+        limits_N = tuple(None if np.isinf(limit) else limit for limit in limits_N.tolist())
+    assert same.tension_max_N == limits_N
     assert (same.pulley_radius_m or 0.0) == robot.pulley_radius_m
     if not robot.is_planar:
         assert np.allclose(np.transpose(same.limits_m), [low, high], rtol=1e-15)

@@ -270,6 +270,7 @@ def _requirement(text, ropes, analysis: Analysis, one: Requirement) -> Iterator[
     if state is None:
         yield f"{name}: the reference does not hold {one.place}"
         return
+    text = {**text, "lost": loaded.lost_cable}
     ours = _severity(one, text)
     theirs = quantity(state, text)
     same = DIFFERENCES if one.id in ("stability", "stiffness") else SAME
@@ -395,9 +396,9 @@ def worn(ends, tension: np.ndarray, d: float, text, life) -> float:
 
 def _severity(one: Requirement, text) -> float:
     """Return the quantity of a requirement so that less of it is worse."""
-    if one.id in ("sag", "winch_tension", "winch_torque"):
+    if one.id in ("sag", "winch_torque"):
         return -one.demand
-    if one.id == "excitation":
+    if one.id in ("excitation", "winch_tension"):
         return -one.utilisation
     return one.capacity
 
@@ -416,14 +417,24 @@ def _torque_Nm(state: State, text) -> float:
     return float(pull * radius / (winches["gear_ratio"] * winches["efficiency"]))
 
 
+def _share_of_winch(state: State, text) -> float:
+    """Return the largest tension over that of its winch."""
+    largest = text["robot"]["winches"]["tension_max"]
+    each = largest if isinstance(largest, list) else [largest] * len(text["robot"]["anchors"])
+    of_cables = [limit for cable, limit in enumerate(each, start=1) if cable != text["lost"]]
+    return max(
+        float(np.linalg.norm(pull_N)) / limit / kept_by_sheaves(text)
+        for pull_N, limit in zip(state.exit_pull_N, of_cables, strict=True)
+        if limit is not None
+    )
+
+
 QUANTITIES = {
     "least_tension": lambda state, _: float(state.least_tension_N.min()),
     "stability": lambda state, _: least_stiffness_N_per_m(state),
     "stiffness": lambda state, _: least_stiffness_N_per_m(state),
     "sag": lambda state, _: -sag_ratio(state),
-    "winch_tension": lambda state, text: (
-        -float(np.linalg.norm(state.exit_pull_N, axis=1).max()) / kept_by_sheaves(text)
-    ),
+    "winch_tension": lambda state, text: -_share_of_winch(state, text),
     "winch_torque": lambda state, text: -_torque_Nm(state, text),
     "floor": lambda state, _: lowest_m(state),
     "clearance": lambda state, _: clearance_m(state),

@@ -328,6 +328,12 @@ def _spooling(study: Text) -> None:
     _set("robot.winches.drum", {"length": 0.3} | aside)(study)
 
 
+def _winches_each(study: Text) -> None:
+    n_cables = len(study["robot"]["anchors"])
+    largest = [[900.0, None, 700.0][k % 3] for k in range(n_cables)]
+    _set("robot.winches.tension_max", largest)(study)
+
+
 def _lines(study: Text) -> None:
     lines = [
         {"linear_mass": 0.35, "diameter": 0.012},
@@ -514,6 +520,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("platform_frequency", "frequency of the platform", ALL, _frequency),
     Option("duty_class", "duty class", ALL, _duty_class),
     Option("winch_tension", "largest tension", ALL, _set("robot.winches.tension_max", 900.0)),
+    Option("winch_tension_each", "largest tension of each winch", ALL, _winches_each),
     Option(
         "sheave_losses",
         "losses on two sheaves",

@@ -41,6 +41,7 @@ QUICK = (
     ("floor", "excitation"),
     ("sheave", "fitting"),
     ("pulleys", "winch_tension"),
+    ("cable_lost", "winch_tension_each"),
     ("platform_frequency", "duty_class"),
     ("ice", "attached_each"),
     ("wrench_box", "dynamic_factor"),

@@ -130,12 +130,37 @@ class DrumSection(Section):
         )
 
 
-class WinchesSection(Section):
-    """The winches, one for each cable and all alike."""
+ConfiguredTensionMax = Annotated[
+    Annotated[fields.BreakingLoad, Tag("of all winches")]
+    | Annotated[
+        tuple[fields.BreakingLoad | None, ...],
+        list_of(2, MOST_CABLES, "one for each cable, null for no limit"),
+        Tag("of each winch"),
+    ],
+    Discriminator(
+        lambda given: "of each winch" if isinstance(given, list | tuple) else "of all winches"
+    ),
+]
 
-    tension_max: fields.BreakingLoad | None = config_field("Largest tension of a winch")
+
+def tension_max_each(
+    given: float | tuple[float | None, ...] | None,
+) -> FloatArray | float | None:
+    """Return the largest tension of all winches, or of each where they differ [N]."""
+    if not isinstance(given, tuple):
+        return given
+    if len(set(given)) == 1:
+        return given[0]
+    return frozen_array([np.inf if largest is None else largest for largest in given])
+
+
+class WinchesSection(Section):
+    """The winches, one for each cable and all alike but for their largest tension."""
+
+    tension_max: ConfiguredTensionMax | None = config_field("Largest tension of a winch")
     """Largest tension of a cable at its exit point, or with sheave_efficiency at its drum, in every
-    load case."""
+    load case: the same of all winches, or a list with one for each cable, in the order of the
+    anchors, null for no limit."""
     speed_max: fields.RopeSpeed | None = config_field("Largest speed of a winch")
     """Fastest that a winch hauls in or pays out, along workspace.path."""
 
@@ -168,7 +193,7 @@ class WinchesSection(Section):
     def winches(self) -> Winches:
         """Return the winches."""
         return Winches(
-            self.tension_max,
+            tension_max_each(self.tension_max),
             None if self.positions is None else frozen_array(self.positions),
             self.drum_diameter,
             self.layers,
@@ -245,7 +270,7 @@ class RobotSection(Section):
     """Least tension anywhere in any cable, where there are more cables than degrees of
     freedom."""
     winches: WinchesSection = WinchesSection()
-    """What pulls the cables: all winches are alike."""
+    """What pulls the cables."""
     attached: ConfiguredAttached | None = None
     """What is clipped along each cable, such as a power line or a hose: the same along all, or a
     list with one for each cable, in the order of the anchors, null for nothing."""

@@ -118,6 +118,7 @@ AT_MOST = f"at most {LARGEST.most:g} m: {LARGEST.reason}; check the unit"
 _ANCHORS = "robot.anchors"
 _ATTACHMENTS = "robot.platform.attachments"
 _WINCHES = "robot.winches.positions"
+_TENSION_MAX = "robot.winches.tension_max"
 _ATTACHED = "robot.attached"
 _NEAREST_WINCH_M = 1e-3
 _NO_POINT_MASS = "robot.platform.attachments, or leave it out"
@@ -385,6 +386,17 @@ def winches_fit(parts: Parts) -> Iterator[Fault]:
         yield parts.fault(_WINCHES, problem, expected, int(index))
 
 
+def largest_tensions_fit(parts: Parts) -> Iterator[Fault]:
+    """A list of the winches' largest tensions has an entry for each cable."""
+    anchors, largest = parts.array(_ANCHORS), parts.read(_TENSION_MAX)
+    if anchors is None or not isinstance(largest, tuple) or len(largest) == len(anchors):
+        return
+    problem = f"{len(largest)} tensions for {len(anchors)} anchors"
+    yield parts.fault(
+        _TENSION_MAX, problem, "one for each anchor, in their order, null for no limit"
+    )
+
+
 def attached_fit(parts: Parts) -> Iterator[Fault]:
     """A list of what is attached has an entry for each cable."""
     anchors, attached = parts.array(_ANCHORS), parts.read(_ATTACHED)
@@ -407,5 +419,6 @@ ROBOT_CHECKS = (
     strain_stays_small,
     robot_has_a_size,
     winches_fit,
+    largest_tensions_fit,
     attached_fit,
 )
