@@ -55,6 +55,7 @@ def test_a_result_with_itself_is_the_same(results) -> None:
     assert found.to_dict()["same"] is True
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", ["workspace.limit_ratio", "selection.chosen.longest_m"])
 def test_a_change_beyond_rounding_is_told_and_rounding_is_not(results, path) -> None:
     for factor, told in ((1.0 + 1e-8, True), (1.0 + 1e-10, False)):
@@ -68,6 +69,7 @@ def test_a_change_beyond_rounding_is_told_and_rounding_is_not(results, path) -> 
         assert compare(results[0], other).is_same is not told
 
 
+@pytest.mark.slow
 def test_the_verdict_and_what_is_not_met_stand_side_by_side(results) -> None:
     assert compare(*results).unmet == ()
     worse = deepcopy(results[1])
@@ -86,6 +88,7 @@ def test_the_verdict_and_what_is_not_met_stand_side_by_side(results) -> None:
     assert line.b in render_html(comparison_report(found, ("a", "b"), created))
 
 
+@pytest.mark.slow
 def test_sizes_that_hold_in_one_only(results) -> None:
     found = compare(*results)
     for line in found.products:
@@ -97,6 +100,7 @@ def test_sizes_that_hold_in_one_only(results) -> None:
     assert held[0] - held[1] <= {line.path for line in found.products}
 
 
+@pytest.mark.slow
 def test_a_result_without_inputs_says_so(results) -> None:
     old = {key: value for key, value in results[0].items() if key != "inputs"}
     found = compare(old, results[1])
@@ -117,6 +121,7 @@ def moment():
     return datetime(2026, 1, 1, tzinfo=UTC)
 
 
+@pytest.mark.slow
 def test_a_study_and_a_result_file(tmp_path, designer, results) -> None:
     (tmp_path / "crane.yaml").write_text(STUDY)
     (tmp_path / "result.json").write_text(json.dumps(results[1]))

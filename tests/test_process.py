@@ -34,7 +34,7 @@ def into_closed_pipe(*arguments: str) -> subprocess.CompletedProcess[bytes]:
 buffered = pytest.mark.parametrize("unbuffered", ["", "1"], ids=["buffered", "unbuffered"])
 
 
-@pytest.mark.cases_by_default(4)
+@pytest.mark.cases_by_default(1)
 @posix
 @buffered
 @pytest.mark.parametrize(

@@ -199,6 +199,7 @@ def test_probability_against_brute_force_sampling() -> None:
     assert low < theirs.high
 
 
+@pytest.mark.slow
 def test_one_pass_and_one_by_one_agree(six_cable_robot: Robot, monkeypatch) -> None:
     rng = np.random.default_rng(22)
     wrench = np.array([300.0, -200, 100, 0, 0, 0])

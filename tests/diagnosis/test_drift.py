@@ -39,7 +39,7 @@ def test_the_filter_makes_white_what_the_whole_covariance_does(decay: float, sha
     assert sum(log.sum() for _, log in steps) == pytest.approx(np.linalg.slogdet(covariance)[1])
 
 
-@pytest.mark.cases_by_default(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("decay", [0.9, 0.97])
 def test_a_constant_gains_nothing_in_noise_that_lasts(decay: float) -> None:
     rng = np.random.default_rng(1)

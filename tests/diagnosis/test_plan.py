@@ -109,6 +109,7 @@ def test_poses_of_a_plan_are_held_within_strength(tmp_path) -> None:
     assert (answer.statics.cable_tension_N <= limit_N).all()
 
 
+@pytest.mark.slow
 def test_spare_cables_of_unknown_strength_are_planned_for(tmp_path) -> None:
     study = read_study(config(tmp_path, HALL8))
     answer = plan(study, study.measurements, study.measurements.cable(), 8)

@@ -114,7 +114,7 @@ def fitted(case: Case) -> tuple[Fit, float]:
     return model, model.loss / (model.n_data - len(model.vector))
 
 
-@pytest.mark.cases_by_default(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [5101, 5102])
 def test_a_height_in_most_rows_tells_a_winch(seed, tmp_path) -> None:
     case = case_in(crane(tmp_path, ["winch_scale of cable 1"], seed))

@@ -168,6 +168,7 @@ def test_candidates_are_proved_with_the_mass_that_they_have_there(iced: Analysis
     assert thinner.linear_density_kg_per_m == pytest.approx(expected, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_report_says_what_stands_for_the_family(iced: Analysis) -> None:
     items = [item.text() for item in tree(section(Drawings(iced), "assumptions")).all("li")]
     (words,) = (text for text in items if "that the study declares" in text)

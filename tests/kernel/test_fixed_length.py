@@ -9,6 +9,7 @@ from designer.kernel.fixed_length import solve_thetas
 from designer.physics import catenary
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("seed", range(4))
 def test_roots_are_those_of_the_arrays(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -16,6 +16,8 @@ from designer.kernel.simplex import (
     rebuild,
 )
 
+pytestmark = pytest.mark.slow  # compiles the solver for the tests alone
+
 
 @kernel
 def solve(table, room, room_slope, again):
@@ -49,7 +51,6 @@ def expected(table, room, room_slope):
     return answer.status, answer.x
 
 
-@pytest.mark.slow  # compiles the solver for the test alone
 @pytest.mark.parametrize("couples", [False, True])
 @pytest.mark.parametrize(("m", "n"), [(2, 3), (3, 4), (6, 7), (6, 8), (3, 8)])
 def test_programmes_are_solved_like_scipys(m, n, couples) -> None:

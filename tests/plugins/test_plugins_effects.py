@@ -162,7 +162,7 @@ def test_a_config_declares_it_with_its_units(site, tmp_path) -> None:
     assert study.source.entries[-1].value_SI == "2 kg"
 
 
-@pytest.mark.cases_by_default(2)
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize(
     ("effects", "words"),
     [
@@ -292,7 +292,7 @@ def test_a_faulty_effect_is_one_line_and_the_rest_works(site, item, words) -> No
     assert [*brought.by_id] == [*SHIPPED.by_id, "lost_ballast"]
 
 
-@pytest.mark.cases_by_default(2)
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize(
     ("code", "words"),
     [

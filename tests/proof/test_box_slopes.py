@@ -23,6 +23,8 @@ from designer.proof.enclosure.box import _bend, _place, _prepare, _slopes
 from designer.proof.enclosure.tables import T_P, T, new_work
 from designer.proof.enclosure.tension import _lowest_slope, along
 
+pytestmark = pytest.mark.slow  # compiles a kernel that other quick tests do without
+
 
 @kernel
 def slopes_of_box(scene, boxes, at, U, P, Z, of_x, of_u, tension, lowest):
@@ -89,7 +91,6 @@ CASES = {
 }
 
 
-@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("case", list(CASES))
 def test_changes_lie_within_the_slopes(case: str) -> None:
     robot, sides, turn = CASES[case]

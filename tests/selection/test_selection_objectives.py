@@ -74,7 +74,7 @@ def grades():
     ]
 
 
-@pytest.mark.cases_by_default(3)
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize(
     ("objectives", "grade"),
     [

@@ -51,6 +51,7 @@ def straight_tension_N(exits_m: np.ndarray, place_m: np.ndarray, load_N: np.ndar
     return float(answer.fun) if answer.status == 0 else np.inf
 
 
+@pytest.mark.cases_by_default(2)
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("n_cables", [3, 4])
 def test_corners_bound_straight_cables(n_cables: int, seed: int) -> None:
@@ -85,6 +86,7 @@ def analysis(tmp_path_factory: pytest.TempPathFactory) -> designer.Analysis:
     return designer.analyse(designer.read_study(path))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_no_wrench_of_a_box_asks_sagging_cables_for_more(
     analysis: designer.Analysis, seed: int

@@ -31,6 +31,7 @@ def test_random_robots_against_another_solver(seed) -> None:
     assert not [o for o in outcomes if o == "thicker" or o.startswith("wrongly")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("robot", "pose"), [(12, 4), (244, 0)])
 def test_cables_that_hang_deep_share_the_load_as_well_as_they_can(robot, pose) -> None:
     """Starts from straight cables all end in ways to hang that ask for 7 and 25 % more."""

@@ -17,6 +17,8 @@ from designer.statics.internal import solve_internal
 from designer.statics.inverse import Statics
 from designer.statics.taut import solve_taut
 
+pytestmark = pytest.mark.slow  # compiles a kernel that other quick tests do without
+
 EIGHT = Robot(
     frozen_array(
         [

@@ -99,6 +99,7 @@ def held(robot: Robot, cable: Cable) -> Statics:
     return solve_forward(robot, cable, lengths[chosen], some).statics
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("name", ["three cables", "six cables", "eight cables"])
 def test_poses_agree(fast_robot, six_cable_robot, line: Line, name: str) -> None:
     """End forces agree to 1e-6 of the tension, and MoorPy's forces hold the platform as well."""

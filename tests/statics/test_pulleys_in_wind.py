@@ -55,7 +55,7 @@ def points_m(statics: Statics) -> FloatArray:
     return np.asarray(statics.run.exit_points_m @ statics.robot.upright)
 
 
-@pytest.mark.cases_by_default(2)
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize(
     ("make", "count"),
     [(three_ropes, 30), (six_ropes, 15), (three_ropes, 120), (six_ropes, 80)],

@@ -144,7 +144,7 @@ def check(robot: Robot, pose: Poses, cable: Cable, slopes: Slopes) -> None:
             ))  # fmt: skip
 
 
-@pytest.mark.cases_by_default(3)
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("make", [point_mass, body, planar])
 @pytest.mark.parametrize("change", [lambda r: r, over_pulleys_in_wind, in_wind, over_pulleys])
 def test_square_robots(

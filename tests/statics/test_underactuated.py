@@ -20,6 +20,8 @@ from designer.physics import catenary
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.underactuated import imbalance, solve_underactuated
 
+pytestmark = pytest.mark.slow  # compiles a kernel that other quick tests do without
+
 ALL = tuple(range(6))
 
 
@@ -65,7 +67,6 @@ def random_machine(rng: np.random.Generator) -> tuple[physics.Machine, FloatArra
     return machine, length, position
 
 
-@pytest.mark.slow
 def test_heavy_cables_on_a_large_robot() -> None:
     """34 kg on four cables of 25 kg over 250 m: lengths to a nanometre, tensions to a millinewton.
 
@@ -88,7 +89,6 @@ def test_heavy_cables_on_a_large_robot() -> None:
     assert found.closure_residual_m().max() < 1e-10
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(20))
 def test_random_machines_at_rest(seed) -> None:
     machine, length, position = random_machine(np.random.default_rng(seed))
@@ -145,7 +145,6 @@ def test_massless_cables_leave_the_least_squares() -> None:
         assert imbalance(found)[k] == pytest.approx(np.sqrt(left[0]) / HALL4.weight_N, rel=1e-5)
 
 
-@pytest.mark.slow
 def test_heavy_cables_leave_the_least_that_scipy_finds() -> None:
     poses = swaying(12)
     found = solve_underactuated(HALL4, poses, HEAVY)
