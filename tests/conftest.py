@@ -120,7 +120,7 @@ def unproved() -> Iterator[None]:
 def compiles_without_a_word() -> Iterator[None]:
     """What commands print does not depend on which test is the first that needs a kernel."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(terminal, "announce_compiling", lambda: None)
+        patch.setattr(terminal, "announce_compiling", lambda **_: None)
         yield
 
 

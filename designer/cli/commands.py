@@ -171,7 +171,7 @@ def report(
     folder = output or Path(f"{config.stem}-report")
     begin_probe()
     catalogue = catalogue_of(study, plugins)
-    announce_compiling()
+    announce_compiling(proves=True)
 
     from designer.analysis.analyse import analyse
     from designer.report.render import REPORT_FILES, write_report_files

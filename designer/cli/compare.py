@@ -48,7 +48,7 @@ def compare(
         else:
             study, plugins = study_of(path, no_plugins, plugins)
             sources.append((study, catalogue_of(study, plugins)))
-    announce_compiling()
+    announce_compiling(proves=True)
 
     from designer.analysis.analyse import analyse
     from designer.analysis.comparison import compare as compare_results

@@ -49,7 +49,7 @@ def lengths(
     table = along_path(study) if poses is None else read_poses(poses, study.robot)
     turned = poses_in(study.workspace, table)
     catalogue = catalogue_of(study, plugins)
-    announce_compiling()
+    announce_compiling(proves=True)
 
     from designer.analysis.analyse import Analysis
     from designer.analysis.lengths import lengths_of

@@ -47,7 +47,7 @@ def optimise(
     from designer.report.figures.opengl import begin_probe, why_no_scenes
 
     begin_probe()
-    announce_compiling()
+    announce_compiling(proves=True)
 
     from designer.optimum.optimise import optimum_of
     from designer.optimum.plan import read_optimisation

@@ -179,15 +179,23 @@ def show(content: Table | str, *, markup: bool = True, soft_wrap: bool = False) 
     _out.print(content, markup=markup, soft_wrap=soft_wrap)
 
 
-def announce_compiling() -> None:
+def announce_compiling(*, proves: bool = False) -> None:
     """Say when the solver has to be compiled, so that the seconds of a first run are no surprise.
 
     Which parts of it a study needs shows only as it runs, so the note comes when one is compiled.
+    Where a proof follows, another process begins with what that needs.
     """
     from designer.kernel.compiling import tell_of_compiling
 
+    def tell() -> None:
+        _notes.print("Compiling what this needs of the solver: once, a minute or two …")
+        if proves:
+            from designer.proof.ahead import compile_apart
+
+            compile_apart()
+
     tell_of_compiling(
-        lambda: _notes.print("Compiling what this needs of the solver: once, a minute or two …"),
+        tell,
         lambda file: _notes.print(
             f"{file} cannot be read: compiled again", markup=False, soft_wrap=True
         ),

@@ -23,7 +23,7 @@ def verify(
     from designer.io.output import write_file
     from designer.reference.page import HEADINGS, cells, compute, markdown
 
-    announce_compiling()
+    announce_compiling(proves=True)
     with ProgressBars("computing") as bars:
         computed = compute(bars)
     for case, figures in computed:

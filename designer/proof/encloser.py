@@ -103,14 +103,44 @@ class Encloser:
 
         Least tensions are ``raised`` (n,) in their middles, sags lowered.
         """
-        from designer.proof.enclosure.box import bound_range
-        from designer.proof.enclosure.tables import BOUND, CUT, ESTIMATE, SPARE, TOLD, Boxes
+        from designer.proof.enclosure.tables import BOUND, CUT, ESTIMATE, SPARE, TOLD
 
         low, high, corners = self.cover.cut(low, high)
         middle = 0.5 * (low + high)
         half = 0.5 * (high - low) * (1.0 + 4.0 * _ULPS) + _ULPS * np.abs(middle)
         steps = 2.0 ** np.ceil(np.log2(np.clip(raised, _LEAST_RAISE, _MOST_RAISE)))
         pull, solved, follow = self._pulls(middle, half, steps)
+        out = self._enclose(middle, half, corners, pull, follow, level)
+        return BoxBounds(
+            bound=np.where(solved, out[:, BOUND], np.inf),
+            cut=out[:, CUT].astype(np.int64),
+            estimate=np.nan_to_num(out[:, ESTIMATE], nan=-np.inf),
+            worst=middle + out[:, TOLD:],
+            middle=middle,
+            solved=solved,
+            needs=steps - out[:, SPARE],
+        )
+
+    def compile(self) -> None:
+        """Have the machine code of `bound` made, before any pull is known."""
+        low, _, corners = self.cover.cut(self.cover.low[:1], self.cover.high[:1])
+        pull = np.ones((1, self._robot.n_cables))
+        follow = np.zeros((*pull.shape, low.shape[1]))
+        self._enclose(low, np.zeros_like(low), corners, pull, follow, 1.0)
+
+    def _enclose(
+        self,
+        middle: FloatArray,
+        half: FloatArray,
+        corners: FloatArray,
+        pull: FloatArray,
+        follow: FloatArray,
+        level: float,
+    ) -> FloatArray:
+        """Return what the kernel tells of boxes, a row each."""
+        from designer.proof.enclosure.box import bound_range
+        from designer.proof.enclosure.tables import TOLD, Boxes
+
         upright = upright_poses(self._robot, Poses.at(self.cover.places(middle)))
         rotation = upright.rotations
         levers = np.einsum("bij,nj->bni", rotation, self._robot.attachments_m)
@@ -141,15 +171,7 @@ class Encloser:
             Boxes(*map(np.ascontiguousarray, boxes)),
             out,
         )
-        return BoxBounds(
-            bound=np.where(solved, out[:, BOUND], np.inf),
-            cut=out[:, CUT].astype(np.int64),
-            estimate=np.nan_to_num(out[:, ESTIMATE], nan=-np.inf),
-            worst=middle + out[:, TOLD:],
-            middle=middle,
-            solved=solved,
-            needs=steps - out[:, SPARE],
-        )
+        return out
 
     def _turns(
         self,

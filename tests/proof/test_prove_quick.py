@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,8 +13,10 @@ from designer.model.cable import Cable, Material
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations, Space
+from designer.proof.ahead import compile_apart, compile_here
 from designer.proof.cover import covers_of
 from designer.proof.encloser import Encloser
+from designer.proof.enclosure.box import bound_range
 from designer.proof.prove import Budget, prove
 from designer.statics.inverse import solve_sagging
 
@@ -121,3 +124,16 @@ def test_bounds_of_a_machine_on_a_desk_are_those_of_a_large_one(fast_robot: Robo
     assert 5 < is_bounded.sum() < 35
     assert (is_bounded == np.isfinite(bounds[1])).all()
     assert bounds[1][is_bounded] == pytest.approx(bounds[0][is_bounded], rel=1e-9)
+
+
+def test_what_is_compiled_ahead_is_what_a_proof_runs(fast_robot: Robot, steel: Material) -> None:
+    compile_here()
+    prove(fast_robot, steel.cable(0.06), PART, 0.5, Budget(boxes=10))
+    assert len(bound_range.signatures) == 1
+
+
+@pytest.mark.slow
+def test_another_process_compiles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    assert compile_apart().wait() == 0
+    assert [*tmp_path.rglob("*bound_range*.nbc")]

@@ -1,0 +1,42 @@
+"""The proof's machine code, made in a second process while a first run still searches.
+
+Compiling holds Python's lock, so a thread would gain nothing.
+"""
+
+from __future__ import annotations
+
+import atexit
+import subprocess
+import sys
+
+from designer.arrays import frozen_array
+from designer.model.cable import Cable
+from designer.model.prism import Prism
+from designer.model.robot import Platform, Robot
+from designer.model.space import Orientations, Space
+from designer.proof.cover import covers_of
+from designer.proof.encloser import Encloser
+
+
+def compile_apart() -> subprocess.Popen[bytes]:
+    """Start and return a process that compiles; it ends with this one at the latest."""
+    process = subprocess.Popen(
+        [sys.executable, "-P", "-m", __name__],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    atexit.register(process.kill)
+    return process
+
+
+def compile_here() -> None:
+    """Compile what bounds a box, or load it: one code for all robots."""
+    exits = frozen_array([[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [2.0, 4.0, 0.0]])
+    box = Prism.box((2.0, 2.1), (1.0, 1.1), (-2.0, -1.9))
+    (cover,) = covers_of(Space(box, Orientations()))
+    Encloser(Robot(exits, Platform(1.0)), Cable(0.01, 0.4, 6e6, 1e4), cover).compile()
+
+
+if __name__ == "__main__":
+    compile_here()
