@@ -96,6 +96,10 @@ def _elasticity(grade: Grade) -> Iterator[Flaw]:
     if modulus is not None and not within(modulus.value_Pa, (1e8, 2.5e11)):
         problem = f"{modulus.value_Pa / 1e9:.4g} GPa is no rope's"
         yield Flaw(("modulus", "value"), problem, "0.1 to 250 GPa")
+    new_Pa = modulus.new_Pa if modulus else None
+    if modulus is not None and new_Pa is not None and not 0.0 < new_Pa <= modulus.value_Pa:
+        problem = f"is {new_Pa / 1e9:.4g} GPa, bedded in {modulus.value_Pa / 1e9:.4g}"
+        yield Flaw(("modulus", "new"), problem, "above zero, at most the value")
     if grade.stiffness is None:
         return
     loads, ratios = grade.stiffness.load_fraction, grade.stiffness.ea_over_breaking_load

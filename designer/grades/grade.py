@@ -32,6 +32,7 @@ from designer.grades.parts import (
     Lines,
     Modulus,
     RelativeStiffness,
+    Remark,
     SheaveRatio,
     StiffnessSection,
     ThermalExpansion,
@@ -172,6 +173,9 @@ class GradeSheet(FileValue):
         a modulus.
     area_factor, thermal_expansion, sheave_ratio, limits
         None where they are not known.
+    rotation, permanent_stretch, discard : Remark or None
+        How far the rope turns under load, by its class; how much it stays longer once loaded; what
+        it is to be discarded at. For a reader: nothing is computed from them.
     currency : str or None
         Of the prices of the sizes, such as ``EUR``.
     computed : tuple of ComputedFigure
@@ -203,6 +207,9 @@ class GradeSheet(FileValue):
     thermal_expansion: ThermalExpansion | None = None
     sheave_ratio: SheaveRatio | None = None
     limits: Limits | None = None
+    rotation: Remark | None = None
+    permanent_stretch: Remark | None = None
+    discard: Remark | None = None
     currency: Line | None = None
     computed: Annotated[tuple[ComputedFigure, ...], ReadAs(ComputedSection)] = ()
     notes: Lines = ()
@@ -277,6 +284,12 @@ class Grade(GradeSheet):
         if size.metallic_area_m2 is not None or self.area_factor is None:
             return size.metallic_area_m2
         return self.area_factor.value * size.diameter_m**2
+
+    @property
+    def fill_factor(self) -> float | None:
+        """Metallic area over the nominal circle, of the thickest; None where it is not known."""
+        area_m2 = self.metallic_area_m2(self.thickest)
+        return None if area_m2 is None else area_m2 / self.thickest.nominal_area_m2
 
     @property
     def elasticity(self) -> Modulus | RelativeStiffness:

@@ -141,7 +141,7 @@ def _identity(grade: Grade) -> Iterator[tuple[str, str]]:
 
 def _figures(grade: Grade) -> Iterator[tuple[str, str]]:
     elasticity, expansion, ratio = grade.elasticity, grade.thermal_expansion, grade.sheave_ratio
-    fit, factor, limits = grade.fit(), grade.area_factor, grade.limits
+    fit, factor = grade.fit(), grade.area_factor
     stiff = f"{elasticity.figure}, ±{elasticity.uncertainty:.0%}"
     yield (
         "modulus" if grade.modulus else "stiffness",
@@ -163,11 +163,28 @@ def _figures(grade: Grade) -> Iterator[tuple[str, str]]:
         yield "thermal expansion", "not given"
     ratios = f"{ratio.suggested:g} suggested, {ratio.minimum:g} minimum, " if ratio else ""
     yield "sheave D/d", f"{ratios}{ratio.source}" if ratio else "not given"
-    if limits and limits.temperature_C:
-        lowest, highest = limits.temperature_C
-        yield "temperature", f"{lowest:g} to {highest:g} °C, {limits.source}"
-    if limits and limits.creep is not None:
-        yield "creep", f"{limits.creep}, {limits.source}"
+    if grade.fill_factor is not None:
+        yield "fill factor", f"{grade.fill_factor:.3g} of the nominal circle is metal"
+    yield from _in_service(grade)
+
+
+def _in_service(grade: Grade) -> Iterator[tuple[str, str]]:
+    """What is known of the rope at work, and one row that names what is not."""
+    limits, range_C = grade.limits, grade.limits and grade.limits.temperature_C
+    known = {
+        "rotation": grade.rotation and str(grade.rotation),
+        "permanent stretch": grade.permanent_stretch and str(grade.permanent_stretch),
+        "discard": grade.discard and str(grade.discard),
+        "temperature": limits
+        and range_C
+        and f"{range_C[0]:g} to {range_C[1]:g} °C, {limits.source}",
+        "creep": limits and limits.creep and f"{limits.creep}, {limits.source}",
+    }
+    yield from ((name, text) for name, text in known.items() if text)
+    can_creep = grade.material_class == "fibre"
+    missing = [name for name, text in known.items() if not text and (can_creep or name != "creep")]
+    if missing:
+        yield "not given", ", ".join(missing)
 
 
 def _not_printed(grade: Grade) -> Iterator[tuple[str, str]]:

@@ -75,11 +75,16 @@ class Modulus(FileValue):
         Where the figure comes from; for a borrowed one, the lender.
     uncertainty : float
         Relative half-width of the range the true value may lie in.
+    new_Pa : float or None
+        The same before the rope has bedded in; None where it is not known. No effect on results.
     """
 
     value_Pa: Annotated[
         float, bounded("modulus"), Field(alias="value", description="a modulus such as '62.7 GPa'")
     ]
+    new_Pa: Annotated[Annotated[float, bounded("modulus")] | None, Field(alias="new")] = field(
+        default=None, kw_only=True
+    )
     reference_area: Annotated[ReferenceArea, Field(description="'nominal' or 'metallic'")]
     basis: StatedBasis
     source: Origin
@@ -89,7 +94,8 @@ class Modulus(FileValue):
     def figure(self) -> str:
         """The modulus in words."""
         area = {"nominal": "nominal circle", "metallic": "metallic area"}[self.reference_area]
-        return f"{self.value_Pa / 1e9:.4g} GPa on the {area}"
+        new = f", {self.new_Pa / 1e9:.4g} GPa when new" if self.new_Pa is not None else ""
+        return f"{self.value_Pa / 1e9:.4g} GPa on the {area}{new}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +136,17 @@ class Limits(FileValue):
     temperature_C: TemperatureRange | None = field(default=None, kw_only=True)
     creep: Line | None = field(default=None, kw_only=True)
     source: Annotated[Line, Field(description="where the limits come from")]
+
+
+@dataclass(frozen=True, slots=True)
+class Remark(FileValue):
+    """What is known of a rope in words, and its source."""
+
+    text: Annotated[Line, Field(description="what is known, in words")]
+    source: Origin
+
+    def __str__(self) -> str:
+        return f"{self.text}, {self.source}"
 
 
 @dataclass(frozen=True, slots=True)

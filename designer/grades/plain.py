@@ -17,7 +17,7 @@ _KINDS: dict[str, Any] = {
     for kind in (
         Grade, Size, parts.AreaFactor, parts.ComputedFigure, parts.Limits, parts.Modulus,
         parts.Reference, parts.SheaveRatio, parts.ThermalExpansion, parts.Units,
-        parts.RelativeStiffness,
+        parts.RelativeStiffness, parts.Remark,
     )
 }  # fmt: skip
 """What a grade is made of."""

@@ -144,6 +144,47 @@ _SHEAVES = {
 }
 
 
+_WIRE_BREAKS = {
+    "6x7": (2, 4),
+    "8x7": (3, 6),
+    "6x36 WS": (7, 14),
+    "8x36 WS": (10, 21),
+    "6x35N": (9, 18),
+    "6x19M": (5, 10),
+    "6x37M": (10, 19),
+    "18x7": (2, 4),
+    "34x7": (3, 5),
+}
+"""Visible broken wires to discard at, over 6 d and 30 d: by its construction where the table has it
+as an example, else by the wires in the outer strands. ``6x19`` and ``8x19`` are several rows."""
+
+_BREAKS_SOURCE = (
+    "ISO 4309:2010 as printed in the inspection manual of Unirope, "
+    "tables/wire-ropes/technical-info/inspmanual_14.php, commit 5ad968b9fb49; "
+    "https://github.com/baudeveloper/unirope-beta"
+)
+_ROTATION_SOURCE = (
+    "Unirope, rotation-resistant and non-rotating wire rope; "
+    "http://unirope.com/ropes/rotation-resistant-non-rotating-wire-rope/"
+)
+_ROTATION = {
+    "18x7": parts.Remark("category II, rotation-resistant, by its two layers", _ROTATION_SOURCE),
+    "34x7": parts.Remark("category I, non-rotating, by its three layers", _ROTATION_SOURCE),
+}
+_STRETCH_SOURCE = (
+    "Certex UK, properties of extension of steel wire ropes; "
+    "https://www.certex.co.uk/Technical/Properties-of-Extension-of-Steel-Wire-Ropes"
+)
+_STRETCH_WITH_FIBRE = "0.25 % at a safety factor of 8, 0.5 % at 5, 0.75 % at 3"
+_STRETCH_WITH_STEEL = "0.125 % at a safety factor of 8, 0.25 % at 5, 0.5 % at 3"
+_LIMITS = parts.Limits(
+    temperature_C=(-40.0, 100.0),
+    source="full load of wire rope slings: Certex, temperature and working load limit; "
+    "https://www.certex.lv/en/technical-information/steel-wire-rope-slings/"
+    "temperature-affect-on-working-load-limit-WLL",
+)
+
+
 def standard_rope(
     factors: Factors, wire_grade_MPa: int, diameters_m: Sequence[float] = DIAMETERS_M
 ) -> Grade:
@@ -189,6 +230,12 @@ def standard_rope(
             12.5e-6, "borrowed", "Metalico, data sheet of galvanised messenger strand"
         ),
         sheave_ratio=_SHEAVES.get(construction),
+        limits=_LIMITS,
+        rotation=_ROTATION.get(construction),
+        permanent_stretch=parts.Remark(
+            _STRETCH_WITH_FIBRE if core == "FC" else _STRETCH_WITH_STEEL, _STRETCH_SOURCE
+        ),
+        discard=_discard(construction),
         computed=(
             parts.ComputedFigure(
                 "minimum_breaking_load", f"K d^2 Rr, K = {factors.breaking_force:.3f}"
@@ -210,6 +257,15 @@ def standard_ropes() -> Iterator[Grade]:
     for factors in FACTORS:
         for wire_grade_MPa in WIRE_GRADES_MPA:
             yield standard_rope(factors, wire_grade_MPa)
+
+
+def _discard(construction: str) -> parts.Remark | None:
+    if construction not in _WIRE_BREAKS:
+        return None
+    short, long = _WIRE_BREAKS[construction]
+    duty = "" if construction in _ROTATION else ", regular lay, M1 to M4 or class unknown"
+    text = f"{short} visible broken wires over 6 d or {long} over 30 d, on steel sheaves and "
+    return parts.Remark(f"{text}single-layer drums{duty}", _BREAKS_SOURCE)
 
 
 def _modulus(factors: Factors) -> parts.Modulus:

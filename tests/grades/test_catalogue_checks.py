@@ -56,6 +56,7 @@ _PLANTED = [
     ("another wire grade", "1960 N/mm2", "2960 N/mm2", 21, "sizes[0].minimum_breaking_load", "46%"),
     ("duplicate id", "id: 8 mm", "id: 6 mm", 24, "sizes[3].id", "given twice"),
     ("unordered", "diameter:  6,", "diameter:  9,", 24, "sizes[3].diameter", "8 mm follows 9 mm"),
+    ("new above bedded in", "62 GPa\n", "62 GPa\n  new: 63 GPa\n", 15, "modulus.new", "is 63 GPa"),
     ("metallic as nominal", "62 GPa", "104 GPa", 14, "modulus.value", "check value and reference"),
     ("load above A·R", "1960 N/mm2", "1270 N/mm2", 21, "sizes[0].minimum_breaking_load", "wire"),
     ("unknown field", "finish:", "finnish:", 6, "finnish", "did you mean 'finish'"),

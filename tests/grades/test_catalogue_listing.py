@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import json
+
 import pytest
 from grade_samples import GRADE_TEXT, write_grade
 
@@ -10,6 +12,7 @@ from designer.grades.listing import (
     split_nominal,
     summary,
 )
+from designer.grades.plain import from_plain, to_plain
 from designer.grades.registry import load_catalogue
 
 
@@ -89,6 +92,32 @@ def test_facts_tell_what_is_not_the_source_s_own():
     assert fibre["doubtful sizes"] == "120 mm"
     assert "no product" in nominal["by name only"]
     assert "nominal" not in wire
+
+
+def test_facts_have_what_is_known_of_the_rope_at_work_and_name_the_rest():
+    catalogue = load_catalogue((), with_plugins=False)
+    running = dict(facts(catalogue.grade("unirope-18x7-2160")))
+    guy = dict(facts(catalogue.grade("metalico-1x7-messenger-utilities")))
+    fibre = dict(facts(catalogue.grade("liros-dsl-hmpe")))
+    nominal = dict(facts(catalogue.grade("en12385-6x19-fc-1770")))
+
+    assert running["rotation"].startswith("category II, rotation-resistant")
+    assert running["permanent stretch"].startswith("0.125 % at a safety factor of 8")
+    assert running["discard"].startswith("2 visible broken wires over 6 d or 4 over 30 d, on steel")
+    assert running["temperature"].startswith("-40 to 100 °C, full load of wire rope slings: Certex")
+    assert "not given" not in running
+    assert "156.9 GPa on the metallic area, 147.1 GPa when new, ±10%, printed" in guy["modulus"]
+    assert guy["fill factor"].startswith("0.717 of")
+    assert guy["not given"] == "rotation, permanent stretch, discard, temperature"
+    assert fibre["not given"] == "rotation, permanent stretch, discard, temperature"
+    assert fibre["creep"].startswith("high")
+    assert nominal["permanent stretch"].startswith("0.25 %")
+    assert nominal["not given"] == "rotation, discard"
+
+
+def test_every_shipped_grade_comes_back_from_plain_data():
+    for grade in load_catalogue((), with_plugins=False).grades:
+        assert from_plain(json.loads(json.dumps(to_plain(grade)))) == grade
 
 
 def test_products_and_nominal_grades_are_told_apart_and_counted():

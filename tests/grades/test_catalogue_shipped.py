@@ -181,6 +181,31 @@ def test_breaking_loads_follow_the_factors_of_en_12385_4(catalogue):
         assert fit.breaking_stress_Pa == pytest.approx(expected_Pa, rel=5e-3)
 
 
+def test_stranded_steel_ropes_have_limits_of_temperature_and_single_strands_have_none(catalogue):
+    for grade in catalogue.grades:
+        if grade.material_class != "fibre":
+            assert (grade.limits is None) == grade.is_strand
+    assert catalogue.grade("unirope-7x19-galvanised").limits.temperature_C == (-54.0, 121.0)
+
+
+def test_rotation_and_wire_breaks_fit_the_construction(catalogue):
+    breaks = {
+        grade.construction: grade.discard.text.split(" visible")[0]
+        for grade in catalogue.grades
+        if grade.discard is not None
+    }
+    assert {name: breaks[name] for name in ("6x7", "7x7", "6x19 Seale", "7x19", "34x7")} == {
+        "6x7": "2",
+        "7x7": "2",
+        "6x19 Seale": "3",
+        "7x19": "5",
+        "34x7": "3",
+    }
+    for grade in catalogue.grades:
+        if grade.rotation is not None and grade.construction.startswith("6x"):
+            assert grade.rotation.text == "not rotation-resistant"
+
+
 def test_sizes_ascend_in_diameter_and_in_breaking_load_but_for_doubtful_ones(catalogue):
     for grade in catalogue.grades:
         for thin, thick in pairwise(size for size in grade.sizes if size.doubt is None):
