@@ -41,6 +41,8 @@ class PlatformModes:
         Lowest frequency of any cable as a string between fixed ends [Hz].
     lowest_bound_Hz : float
         What the lowest frequency of platform and cables together is not below [Hz].
+    statics : Statics
+        The equilibrium about which it oscillates.
     """
 
     modes: tuple[Mode, ...] = field(metadata={"json": None})
@@ -49,6 +51,7 @@ class PlatformModes:
     place: FloatArray = field(metadata={"json": named_place})
     string_frequency_Hz: float
     lowest_bound_Hz: float
+    statics: Statics = field(metadata={"json": None})
 
     def excess(self, mode: Mode) -> float:
         """Return by how much of itself a frequency is too high; see `designer.physics.inertia`."""
@@ -110,4 +113,5 @@ def _modes(
         place=statics.poses.place,
         string_frequency_Hz=float(np.min(string_frequencies_Hz(statics, density))),
         lowest_bound_Hz=float(lowest_bound_Hz(statics, modes[0].frequency_Hz, density)),
+        statics=statics,
     )

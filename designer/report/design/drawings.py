@@ -22,6 +22,7 @@ from designer.report.figures.charts_shares import parts, served_chart, usable_ch
 from designer.report.figures.colours import DIAMETER, RATIO, UTILISATION, tension_of
 from designer.report.figures.groups_plan import groups_plan
 from designer.report.figures.interactive import workspace_scene_html
+from designer.report.figures.mode_shapes import mode_shapes
 from designer.report.figures.scenes import cover_scene, robot_scene, usable_scene, workspace_scene
 from designer.report.figures.sections import (
     clearance_map,
@@ -97,6 +98,12 @@ class Drawings:
     def frequency(self) -> str | None:
         """The lowest frequency, as a map in plan."""
         return frequency_map(self.analysis)
+
+    @cached_property
+    def mode_shapes(self) -> tuple[Drawing, ...]:
+        """How the platform moves in each of its modes; empty where figures are not drawn."""
+        found = self.analysis.modes if self.draws else None
+        return () if found is None else tuple(map(Drawing, mode_shapes(found)))
 
     @chart
     def clearance(self) -> str | None:

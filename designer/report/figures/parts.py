@@ -65,7 +65,7 @@ def ticks_between(low: float, high: float, most: int = 5) -> FloatArray:
 
 
 def hull_faces(points_m: FloatArray) -> Faces:
-    """Return the triangles of the hull of points, by their indices (n_faces, 3).
+    """Return the triangles of the hull of points, by their indices (n_faces, 3), seen from outside.
 
     For points in one plane the triangles of their outline, for points on a line none.
     """
@@ -77,7 +77,13 @@ def hull_faces(points_m: FloatArray) -> Faces:
     if rank < 2 or len(points_m) < 3:
         return np.empty((0, 3), dtype=np.int64)
     if rank == 3:
-        return np.asarray(ConvexHull(points_m).simplices, dtype=np.int64)
+        hull = ConvexHull(points_m)
+        first, second, third = points_m[hull.simplices.T]
+        normals = np.cross(second - first, third - first)
+        faces: Faces = np.array(hull.simplices, dtype=np.int64)
+        is_inward = np.einsum("ij,ij->i", normals, hull.equations[:, :3]) < 0.0
+        faces[is_inward] = faces[is_inward, ::-1]
+        return faces
     outline = ConvexHull(centred @ axes[:2].T).vertices
     fan = [[outline[0], outline[k], outline[k + 1]] for k in range(1, len(outline) - 1)]
     return np.array(fan, dtype=np.int64)
