@@ -19,6 +19,8 @@ class Figure:
     tolerance : float or None
         Largest relative difference that holds; None where theirs is known to be wrong, and is only
         shown.
+    is_limit : bool
+        Whether theirs is what ours may not exceed, such as the largest force of a winch.
     """
 
     name: str
@@ -26,6 +28,7 @@ class Figure:
     theirs: float
     ours: float
     tolerance: float | None
+    is_limit: bool = False
 
     @property
     def difference(self) -> float:
@@ -35,7 +38,8 @@ class Figure:
     @property
     def holds(self) -> bool:
         """Whether the difference is within the tolerance, if there is one."""
-        return self.tolerance is None or abs(self.difference) <= self.tolerance
+        difference = self.difference if self.is_limit else abs(self.difference)
+        return self.tolerance is None or difference <= self.tolerance
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,6 +33,45 @@ _WIRE_ROPE = Material(5208.0, 61e9, 177.7e6)
 6x37 IWRC by Strand Core."""
 _SMALL_ROPE = Material(5290.0, 62.7e9, 330e6)
 """Galvanised 7x19 over its nominal circle, with a safety factor of 3."""
+# The CableRobot Simulator of the Max Planck Institute for Biological Cybernetics, and CAROCA:
+# CASPR, models/SCDM/spatial_manipulators, the latter with its set of cables gazebo_sim.
+SIMULATOR = Robot(
+    frozen_array(
+        [
+            [0.8, 14.9, 7.9], [0.8, 14.9, 0.6], [11.3, 14.6, 7.9], [11.3, 14.6, 1.2],
+            [11.2, 0.6, 7.9], [11.2, 0.5, 1.2], [0.42, 0.5, 8.0], [0.42, 0.5, 0.7],
+        ]
+    ),
+    Platform(
+        100.0,
+        frozen_array(
+            [
+                [-1.4, 0.5, -0.7], [-0.8, 1.2, 0.7], [1.5, 0.4, -0.7], [1.0, 1.1, 0.7],
+                [0.8, -1.3, -0.7], [1.4, -0.6, 0.7], [-0.9, -1.2, -0.7], [-1.4, -0.4, 0.7],
+            ]
+        ),
+    ),
+    tension_min_N=1000.0,
+)  # fmt: skip
+_CORNERS_M = [[-3.5, -2.0, 3.5], [3.5, -2.0, 3.5], [-3.5, 2.0, 3.5], [3.5, 2.0, 3.5]]
+CAROCA = Robot(
+    frozen_array(np.repeat(_CORNERS_M, 2, axis=0)),
+    Platform(
+        150.0,
+        frozen_array(
+            [
+                [0.6, -0.3, -0.2], [-0.6, 0.3, 0.2], [-0.6, -0.3, 0.2], [0.6, 0.3, -0.2],
+                [-0.6, -0.3, -0.2], [0.6, 0.3, 0.2], [0.6, -0.3, 0.2], [-0.6, 0.3, -0.2],
+            ]
+        ),
+    ),
+)  # fmt: skip
+STADIUM_CAMERA = Robot(
+    frozen_array(
+        [[-85.0, -60.0, 40.0], [85.0, -60.0, 40.0], [85.0, 60.0, 40.0], [-85.0, 60.0, 40.0]]
+    ),
+    Platform(30.0),
+)
 _LADEN = 1.3
 """Mass of a rope with what hangs on it, over its own."""
 _RIM_M = 103.0
@@ -96,6 +135,34 @@ def _cogiro() -> Sequence[Figure]:
     return (Figure("rope for a factor of 3", "mm", 4.0, 1e3 * worst.diameter_m, 0.1),)
 
 
+def _simulator() -> Sequence[Figure]:
+    return (_winch_force(SIMULATOR, Prism.box((3.9, 7.9), (5.0, 10.0), (3.0, 5.5)), 14.0),)
+
+
+def _caroca() -> Sequence[Figure]:
+    return (_winch_force(CAROCA, Prism.box((-1.5, 1.5), (-0.75, 0.75), (0.5, 2.0)), 1.0),)
+
+
+def _winch_force(robot: Robot, region: Prism, largest_kN: float) -> Figure:
+    ours = 1e-3 * _largest_tension_N(robot, region)
+    return Figure("largest force that a winch needs", "kN", largest_kN, ours, 0.0, is_limit=True)
+
+
+def _camera() -> Sequence[Figure]:
+    field = Prism.box((-52.5, 52.5), (-34.0, 34.0), (3.0, 20.0))
+    ours = _largest_tension_N(STADIUM_CAMERA, field) / GRAVITY
+    return (Figure("largest force of a rope", "kgf", 65.0, ours, 0.15),)
+
+
+def _largest_tension_N(robot: Robot, region: Prism) -> float:
+    """Return the tension where a rope is used most; infinite where a pose is not held."""
+    from designer.workspace.sweep import map_workspace
+
+    workspace = Workspace(region, samples=500)
+    worst = map_workspace(robot, workspace, _SMALL_ROPE, with_massless=False).sagging
+    return np.inf if worst is None else worst.max_tension_N
+
+
 CASES = (
     ReferenceCase(
         "The feed cabin of FAST, found blind",
@@ -117,5 +184,31 @@ CASES = (
         "The load hangs at the platform's frame and goes where the example goes, 8 x 6 x 2 m; that "
         "and the safety factor of 3 are ours. The rope is galvanised 7x19 over its nominal circle.",
         _cogiro,
+    ),
+    ReferenceCase(
+        "The CableRobot Simulator at rest",
+        "Geometry, 100 kg, and forces of 1 to 14 kN a cable: CASPR, model "
+        "The_Cable_Robot_Simulator, of Miermeister et al., IROS 2016, pp. 3024-3029",
+        "Held level over 4 x 5 x 2.5 m about the pose that the model begins in, with the least "
+        "force of 1 kN in each cable; the region, the wire rope and that it is at rest are ours. "
+        "What its winches have beyond that is for what its passenger feels, and is not compared.",
+        _simulator,
+    ),
+    ReferenceCase(
+        "CAROCA at rest",
+        "Geometry, 150 kg, and a largest force of 1 kN a cable: CASPR, model CAROCA, cables "
+        "gazebo_sim",
+        "Held level over 3 x 1.5 x 1.5 m about the pose that the model begins in; the region, the "
+        "wire rope and that it is at rest are ours. No more is told than that the winches do.",
+        _caroca,
+    ),
+    ReferenceCase(
+        "A stadium camera",
+        "A load of 30 kg: Spidercam, 2018; ropes run up to 65 kgf: JoyMechanix, frequently asked "
+        "questions",
+        "Two makers, no drawing: where the sheaves hang, 170 x 120 m apart and 40 m up, over a "
+        "field of 105 x 68 m that is flown at 3 to 20 m, is our assumption, as in the example "
+        "'stadium', and with it how near the two figures are.",
+        _camera,
     ),
 )

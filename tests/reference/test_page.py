@@ -31,6 +31,16 @@ def test_only_what_is_known_to_be_wrong_goes_unjudged() -> None:
     assert sum(one.tolerance is None for case in CASES for one in case.figures()) == len(unjudged)
 
 
+def test_limits_are_held_from_below() -> None:
+    limit = Figure("force", "kN", 14.0, 7.8, 0.0, is_limit=True)
+    assert limit.holds
+    assert not replace(limit, ours=14.01).holds
+    assert not replace(limit, ours=float("inf")).holds
+    page = markdown([(CASES[0], [limit])])
+    assert "| force | kN | 14 | 7.8 | -4.4e-01 | up to theirs | holds |" in page
+    assert f"| {CASES[0].title} | 1 | — | 0 |" in page
+
+
 def test_half_of_the_last_digit() -> None:
     assert as_printed("", "", "32.6", 32.649).holds
     assert not as_printed("", "", "32.6", 32.651).holds
