@@ -36,13 +36,20 @@ def test_it_finds_what_symmetry_and_reason_say(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
-def test_no_point_of_a_grid_is_better(tmp_path: Path, seed: int) -> None:
-    """Two variables against each other, the best inside: what rope there is goes out or up."""
+@pytest.mark.parametrize(
+    "rails",
+    [
+        "robot.anchors.2.1: [8 m, 20 m], robot.anchors.2.2: [5 m, 12 m]",
+        "robot.anchors.2.0: [2 m, 18 m], robot.anchors.2.1: [8 m, 20 m]",
+    ],
+)
+def test_no_point_of_a_grid_is_better(tmp_path: Path, rails: str, seed: int) -> None:
+    """An exit point on two rails, the best inside: what rope there is goes out or up."""
     plan = plan_of(
         tmp_path,
         "study: crane.yaml\n"
         "objective: {minimise: pose.sagging.max_tension_N}\n"
-        "variables: {robot.anchors.2.1: [8 m, 20 m], robot.anchors.2.2: [5 m, 12 m]}\n"
+        f"variables: {{{rails}}}\n"
         "constraints: {pose.sagging.lengths_m.2: 8 m}\n"
         f"seed: {seed}\nbudget: {{evaluations: 220}}\n",
     )
