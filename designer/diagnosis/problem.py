@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.machine import Machine
 from designer.model.measured_data import EVEN, Measured, Noise
 from designer.model.robot import Poses
-from designer.statics.internal import solve_internal
+from designer.statics.internal import InternalBalance
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.taut import solve_taut
 from designer.statics.underactuated import imbalance, solve_underactuated
@@ -44,16 +45,15 @@ def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None
         statics = solve_sagging(machine.robot, poses, machine.cables, force, seeks_better=False)
     else:
         statics = solve_underactuated(machine.robot, poses, machine.cables, force)
-    return with_stiff_ends(machine, statics)
+    return with_stiff_ends(machine, statics, true_readings(statics))
 
 
-def with_stiff_ends(machine: Machine, statics: Statics) -> Readings:
-    """Return lengths and winch-side tensions, less what bending stiffness takes off the former."""
-    length, tension = statics.length_m, statics.exit_tension_N
-    if machine.flexural_rigidity_N_m2:
-        span = statics.geometry().horizontal_distance_m
-        length = length - straightened_m(machine, tension, span)
-    return Readings(length, tension)
+def with_stiff_ends(machine: Machine, statics: Statics, true: Readings) -> Readings:
+    """Return the true readings of a balance, less what bending stiffness takes off the lengths."""
+    if machine.flexural_rigidity_N_m2 == 0.0:
+        return true
+    span = statics.geometry().horizontal_distance_m
+    return replace(true, length_m=true.length_m - straightened_m(machine, true.tension_N, span))
 
 
 def added_force_N(machine: Machine, measured: Measured) -> FloatArray | None:
@@ -115,17 +115,12 @@ class Guess:
     distrust: tuple[float, float] = (1.0, 1.0)
     near: Statics | None = None
 
-    def after(
-        self, measured: Measured, near: Statics, displayed: Readings, noise: Noise, *, judges: bool
-    ) -> Guess:
-        """Return the guess that an answer leads to; with ``judges``, also of the distrust."""
-        added = np.nan_to_num(displayed.stacked - true_readings(near).stacked)
-        if not judges:
-            return Guess(added, self.distrust, near)
+    def with_distrust(self, measured: Measured, displayed: Readings, noise: Noise) -> Guess:
+        """Return the guess with a distrust that suits what is displayed."""
         sigma = noise.of_channels(measured.length_m.shape[1])
         length, tension = np.hsplit(np.abs(measured.readings - displayed.stacked) / sigma, 2)
         distrust = (_distrust(length, self.distrust[0]), _distrust(tension, self.distrust[1]))
-        return Guess(added, distrust, near)
+        return replace(self, distrust=distrust)
 
     def is_near(self, previous: Guess, noise: Noise) -> bool:
         """Tell whether another guess would give the same, to a small share of the noise."""
@@ -143,21 +138,32 @@ def _distrust(off: FloatArray, before: float) -> float:
     return float(2.0 ** np.floor(np.log2(max(size, 1.0))))
 
 
-def balanced(
-    machine: Machine, measured: Measured, guess: Guess, noise: Noise, near: Statics | None = None
-) -> Statics:
-    """Return the balance whose true lengths and tensions suit the readings; from one ``near``."""
-    length_m, tension_N = np.hsplit(measured.readings - guess.added, 2)
-    return solve_internal(
-        machine.robot,
-        measured.poses,
-        machine.cables,
-        length_m,
-        tension_N,
-        (noise.length_m * guess.distrust[0], noise.tension_N * guess.distrust[1]),
-        added_force_N(machine, measured),
-        near,
-    )
+@dataclass(frozen=True, eq=False)
+class Built:
+    """A machine with effects on it, and the rows in the poses that it had.
+
+    Parameters
+    ----------
+    machine : Machine
+        With the effects.
+    measured : Measured
+        The rows.
+    """
+
+    machine: Machine
+    measured: Measured
+
+    @cached_property
+    def _balance(self) -> InternalBalance:
+        machine, measured = self.machine, self.measured
+        force_N = added_force_N(machine, measured)
+        return InternalBalance(machine.robot, measured.poses, machine.cables, force_N)
+
+    def balanced(self, guess: Guess, noise: Noise, near: Statics | None = None) -> Statics:
+        """Return the balance whose true lengths and tensions suit the readings."""
+        length_m, tension_N = np.hsplit(self.measured.readings - guess.added, 2)
+        doubt = noise.length_m * guess.distrust[0], noise.tension_N * guess.distrust[1]
+        return self._balance.nearest(length_m, tension_N, doubt, near)
 
 
 def true_readings(statics: Statics) -> Readings:
@@ -168,6 +174,8 @@ def true_readings(statics: Statics) -> Readings:
 Kind = tuple[object, ...]
 """A set of effects, whatever their values, with the noise that is assumed."""
 
+_MOST_BUILT = 8
+"""Machines that are kept: effects on readings, one after the other, leave the machine alone."""
 _MOST_TURNS = 12
 """Turns at most: what sensors add depends little on internal forces, so that few will do."""
 
@@ -207,6 +215,7 @@ class Predictor:
     session: int | None = None
     _guesses: dict[Kind, Guess] = field(init=False, default_factory=dict)
     _known: dict[Kind, tuple[Readings, Readings]] = field(init=False, default_factory=dict)
+    _built: dict[Kind, tuple[Measured, Built]] = field(init=False, default_factory=dict)
     slopes: KeptSlopes = field(init=False, default_factory=KeptSlopes)
 
     def at(self, measured: Measured) -> Predictor:
@@ -224,6 +233,18 @@ class Predictor:
             if setting.effect.on_poses is not None:
                 poses = setting.effect.on_poses(poses, setting.values)
         return replace(self.measured, poses=poses)
+
+    def _kept(self, settings: Sequence[Setting]) -> Built:
+        """Return machine and rows as these effects have them, from the latest where it is there."""
+        bodily = (s for s in settings if s.effect.on_machine or s.effect.on_poses)
+        key = tuple((s.effect.key, *s.values.values()) for s in bodily)
+        rows, kept = self._built.get(key, (None, None))
+        if kept is None or rows is not self.measured:
+            kept = Built(self.built(settings), self.placed(settings))
+            if len(self._built) >= _MOST_BUILT:
+                self._built.clear()
+            self._built[key] = self.measured, kept
+        return kept
 
     def _all(self, settings: Sequence[Setting]) -> list[Setting]:
         """Return the effects that show in these rows, in the order in which they act."""
@@ -300,8 +321,8 @@ class Predictor:
         return guess.distrust if guess else (1.0, 1.0)
 
     def _physical(self, settings: Sequence[Setting], _: Noise) -> tuple[Readings, Readings]:
-        placed = self.placed(settings)
-        readings = readings_of(self.built(settings), placed.poses, placed)
+        kept = self._kept(settings)
+        readings = readings_of(kept.machine, kept.measured.poses, kept.measured)
         return readings, readings
 
     def _with_forces(self, settings: Sequence[Setting], noise: Noise) -> tuple[Readings, Readings]:
@@ -332,31 +353,41 @@ class Predictor:
 
         What they add depends on the internal forces in turn, though little.
         """
-        machine, measured = self.built(settings), self.placed(settings)
-        nothing = Guess(np.zeros_like(measured.readings))
+        kept = self._kept(settings)
+        nothing = Guess(np.zeros_like(kept.measured.readings))
         guess = self._guesses.get(kind_of(settings, noise), nothing)
         # Of two ways to hold a row, where there are two, the first judgement chooses.
         near = None if judges else guess.near
         if near is not None:  # what these values add to it
-            displayed = self._shown(with_stiff_ends(machine, near), settings)
-            guess = guess.after(measured, near, displayed, noise, judges=False)
+            _, displayed, guess = self._displayed(near, settings, guess)
         for _ in range(_MOST_TURNS):
-            held = balanced(machine, measured, guess, noise, near)
+            held = kept.balanced(guess, noise, near)
             near = None if judges else held
-            displayed = self._shown(with_stiff_ends(machine, held), settings)
-            before, guess = guess, guess.after(measured, held, displayed, noise, judges=judges)
+            before = guess
+            true, displayed, guess = self._displayed(held, settings, before)
+            if judges:
+                guess = guess.with_distrust(kept.measured, displayed, noise)
             if guess.is_near(before, noise):
                 break
-        return guess, true_readings(held), displayed
+        return guess, true, displayed
+
+    def _displayed(
+        self, held: Statics, settings: Sequence[Setting], guess: Guess
+    ) -> tuple[Readings, Readings, Guess]:
+        """Return true and displayed readings of a balance, and the guess that it leads to."""
+        true = true_readings(held)
+        displayed = self._shown(with_stiff_ends(self._kept(settings).machine, held, true), settings)
+        added = np.nan_to_num(displayed.stacked - true.stacked)
+        return true, displayed, replace(guess, added=added, near=held)
 
     def _shown(self, readings: Readings, settings: Sequence[Setting]) -> Readings:
-        placed, built = self.placed(settings), self.built(settings)
+        kept = self._kept(settings)
         for setting in self._all(settings):
             change, more = setting.effect.on_readings, {}
             if setting.effect.takes_machine:  # as the other effects have it
-                more = {"machine": built}
+                more = {"machine": kept.machine}
             if change is not None:
-                readings = change(readings, setting.values, placed, **more)
+                readings = change(readings, setting.values, kept.measured, **more)
         return readings
 
 

@@ -54,12 +54,14 @@ from designer.kernel.table import (
     V,
 )
 
-# Rows of a cable beside those of the table: gradient and curvature of the sum.
-_GRADIENT, _CURVATURE = LANE_ROWS, LANE_ROWS + 1
+# Rows of a cable beside those of the table: gradient and curvature of the sum, the last step.
+_GRADIENT, _CURVATURE, _BEFORE = LANE_ROWS, LANE_ROWS + 1, LANE_ROWS + 2
 
 _MOST_TURNS = 100
 _PATIENCE = 15
 """Turns after which steps are made shorter: readings far off may let them overshoot."""
+_OVERSHOOT = 0.25
+"""Of a step, that the next goes back: a wild reading bends more than its slope tells."""
 _LAST_TURNS = 6
 """Turns that mend the balance alone: readings far off may never come to rest."""
 _SMALL_STEP = 1e-10
@@ -105,16 +107,19 @@ def solve_internal_poses(
     """
     rows = situation.rows
     count, n, m = situation.positions.shape[0], situation.attachments.shape[0], rows.size
-    cables = np.empty((n, LANE_ROWS + 2, LANES))
+    cables = np.empty((n, LANE_ROWS + 3, LANES))
     slopes = np.zeros((n + 1, n + 2, LANES))
     normal = np.empty((m + 1, m + 1, LANES))
     poses = np.empty((POSE_ROWS, LANES))
+    stiffer = np.empty(LANES)
     every = np.arange(count)
     for first in range(0, count, LANES):
         lane = lanes_of(every, first)
         place(cables, poses, situation, lane)
         put_cables(cables, figures, lane)
         poses[C] = 0.0
+        stiffer[:] = 1.0
+        cables[:, _BEFORE] = 0.0
         for i in range(n):  # straight cables that pull so
             row = cables[i]
             for j in range(LANES):
@@ -126,12 +131,13 @@ def solve_internal_poses(
             assemble(slopes, cables, poses, rows)
             for i in range(n):
                 _judge(cables[i], read, noise, pull, spread, lane, i)
-                cables[i, _CURVATURE] *= 1.0 + turn // _PATIENCE
+                cables[i, _CURVATURE] *= stiffer + turn // _PATIENCE
                 if turn >= _MOST_TURNS - _LAST_TURNS:
                     cables[i, _GRADIENT] = 0.0
             _set_normal(normal, slopes, cables, m)
             solve_lanes(normal, m, m + 1)
             _set_step(slopes, normal, cables, m)
+            _stiffen(stiffer, slopes, cables)
             poses[STEP] = 0.0
             advance(cables, slopes, poses)
             if np.max(poses[STEP]) < _SMALL_STEP:
@@ -215,6 +221,21 @@ def _set_step(slopes: FloatArray, normal: FloatArray, cables: FloatArray, m: int
             for r in range(m):
                 total += slopes[r, i, j] * normal[r, m, j]
             slopes[i, n, j] = -total / row[_CURVATURE, j]
+
+
+@inner
+def _stiffen(stiffer: FloatArray, slopes: FloatArray, cables: FloatArray) -> None:
+    """Raise the curvature of poses whose steps go back and forth, to what would make them end."""
+    n = cables.shape[0]
+    for j in range(LANES):
+        along, square = 0.0, 1e-300
+        for i in range(n):
+            along += slopes[i, n, j] * cables[i, _BEFORE, j]
+            square += cables[i, _BEFORE, j] ** 2
+            cables[i, _BEFORE, j] = slopes[i, n, j]
+        back = -along / square
+        if back > _OVERSHOOT or stiffer[j] > 1.0:
+            stiffer[j] = max(stiffer[j] * (1.0 + min(max(back, -0.5), 1.0)), 1.0)
 
 
 @kernel

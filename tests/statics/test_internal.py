@@ -13,7 +13,7 @@ from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
 from designer.physics import catenary
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
-from designer.statics.internal import solve_internal
+from designer.statics.internal import InternalBalance
 from designer.statics.inverse import Statics
 from designer.statics.taut import solve_taut
 
@@ -60,9 +60,9 @@ def nothing(robot: Robot) -> FloatArray:
 def some_balance(robot: Robot, seed: int = 1) -> Statics:
     """A balance with arbitrary internal forces: that nearest to scattered tensions."""
     poses, none = poses_of(robot), nothing(robot)
-    level = solve_internal(robot, poses, ROPE, none, none, NOISE).exit_tension_N
+    level = InternalBalance(robot, poses, ROPE).nearest(none, none, NOISE).exit_tension_N
     spread = np.random.default_rng(seed).normal(0.0, 0.05, level.shape) * level
-    return solve_internal(robot, poses, ROPE, none, level + spread, NOISE)
+    return InternalBalance(robot, poses, ROPE).nearest(none, level + spread, NOISE)
 
 
 ROBOTS = [
@@ -86,7 +86,7 @@ def test_the_balance_closes(robot: Robot) -> None:
 def test_readings_without_noise_give_the_forces_that_are_there(robot: Robot) -> None:
     there = some_balance(robot)
     poses = poses_of(robot)
-    both = solve_internal(robot, poses, ROPE, there.length_m, there.exit_tension_N, NOISE)
+    both = InternalBalance(robot, poses, ROPE).nearest(there.length_m, there.exit_tension_N, NOISE)
     # The weak pull toward the smallest tensions holds the weight of the platform against the noise.
     np.testing.assert_allclose(both.exit_tension_N, there.exit_tension_N, atol=0.02)
     np.testing.assert_allclose(both.length_m, there.length_m, atol=1e-6)
@@ -95,8 +95,12 @@ def test_readings_without_noise_give_the_forces_that_are_there(robot: Robot) -> 
 def test_lengths_alone_tell_the_forces_through_elasticity() -> None:
     there = some_balance(EIGHT)
     none = nothing(EIGHT)
-    level = solve_internal(EIGHT, poses_of(EIGHT), ROPE, none, none, NOISE).exit_tension_N
-    found = solve_internal(EIGHT, poses_of(EIGHT), ROPE, there.length_m, none, NOISE).exit_tension_N
+    level = InternalBalance(EIGHT, poses_of(EIGHT), ROPE).nearest(none, none, NOISE).exit_tension_N
+    found = (
+        InternalBalance(EIGHT, poses_of(EIGHT), ROPE)
+        .nearest(there.length_m, none, NOISE)
+        .exit_tension_N
+    )
     assert np.abs(found - there.exit_tension_N).max() < 0.05 * np.abs(level - found).max()
 
 
@@ -107,7 +111,7 @@ def test_it_is_the_optimum_that_scipy_finds(noise: tuple[float, float]) -> None:
     rng = np.random.default_rng(2)
     length = there.length_m + rng.normal(0.0, NOISE[0], there.length_m.shape)
     tension = there.exit_tension_N + rng.normal(0.0, NOISE[1], there.length_m.shape)
-    found = solve_internal(FOUR, poses_of(FOUR), ROPE, length, tension, noise)
+    found = InternalBalance(FOUR, poses_of(FOUR), ROPE).nearest(length, tension, noise)
     for k in range(5):
         theirs = _by_slsqp(Poses.at(poses_of(FOUR).position_m[k]), length[k], tension[k], noise)
         np.testing.assert_allclose(found.force_x_N[k], theirs, rtol=1e-4)
@@ -157,7 +161,7 @@ def test_a_wild_reading_moves_little() -> None:
     there = some_balance(EIGHT)
     wild = there.exit_tension_N.copy()
     wild[:, 2] += 200.0 * NOISE[1]
-    found = solve_internal(EIGHT, poses_of(EIGHT), ROPE, there.length_m, wild, NOISE)
+    found = InternalBalance(EIGHT, poses_of(EIGHT), ROPE).nearest(there.length_m, wild, NOISE)
     assert found.is_solved.all()
     assert np.abs(found.exit_tension_N - there.exit_tension_N).max() < 4.0 * NOISE[1]
 
@@ -173,10 +177,12 @@ def test_tensions_are_believed_where_an_attachment_is_in_the_wrong_place() -> No
     tight = Cable(float("nan"), 1e-4, 1e5, float("inf"))
     at = np.random.default_rng(4).uniform([2.5, 2.0, 1.5], [3.5, 3.0, 2.0], (COUNT, 3))
     poses, none = Poses.at(at, np.full((COUNT, 3), 0.02)), nothing(robot)
-    there = solve_internal(robot, poses, tight, none, np.full_like(none, 500.0), (1e-3, 1.0))
+    there = InternalBalance(robot, poses, tight).nearest(
+        none, np.full_like(none, 500.0), (1e-3, 1.0)
+    )
     assert np.median(there.exit_tension_N) > 300.0
     length = there.length_m + np.array([0.0, 0.0, 0.0, 0.015, 0.0, 0.0, 0.0, 0.0])
-    found = solve_internal(robot, poses, tight, length, there.exit_tension_N, (0.04, 50.0))
+    found = InternalBalance(robot, poses, tight).nearest(length, there.exit_tension_N, (0.04, 50.0))
     assert np.abs(found.exit_tension_N - there.exit_tension_N).max() < 100.0
 
 
@@ -184,14 +190,14 @@ def test_readings_that_contradict_each_other_still_give_a_balance() -> None:
     there = some_balance(EIGHT)
     off = np.random.default_rng(3).normal(0.0, 300.0, there.length_m.shape)
     tension = np.fmax(there.exit_tension_N + off, 1.0)
-    found = solve_internal(EIGHT, poses_of(EIGHT), ROPE, nothing(EIGHT), tension, NOISE)
+    found = InternalBalance(EIGHT, poses_of(EIGHT), ROPE).nearest(nothing(EIGHT), tension, NOISE)
     assert found.is_solved.all()
 
 
 def test_a_pose_that_cannot_be_balanced_is_told() -> None:
     position = np.array([[0.0, 0.0, 2.0], [0.0, 0.0, 40.0]])  # the second above all exit points
     none = np.full((2, 4), np.nan)
-    found = solve_internal(FOUR, Poses.at(position), ROPE, none, none, NOISE)
+    found = InternalBalance(FOUR, Poses.at(position), ROPE).nearest(none, none, NOISE)
     assert found.verdict.tolist() == [Verdict.SOLVED, Verdict.NOT_CONVERGED]
     assert np.isnan(found.length_m[1]).all()
 
@@ -199,13 +205,8 @@ def test_a_pose_that_cannot_be_balanced_is_told() -> None:
 def test_one_pose_as_in_a_batch() -> None:
     there = some_balance(EIGHT)
     poses = poses_of(EIGHT)
-    alone = solve_internal(
-        EIGHT,
-        Poses(poses.position_m[7:8], poses.rotation[7:8]),
-        ROPE,
-        there.length_m[7:8],
-        there.exit_tension_N[7:8],
-        NOISE,
+    alone = InternalBalance(EIGHT, Poses(poses.position_m[7:8], poses.rotation[7:8]), ROPE).nearest(
+        there.length_m[7:8], there.exit_tension_N[7:8], NOISE
     )
-    all_ = solve_internal(EIGHT, poses, ROPE, there.length_m, there.exit_tension_N, NOISE)
+    all_ = InternalBalance(EIGHT, poses, ROPE).nearest(there.length_m, there.exit_tension_N, NOISE)
     np.testing.assert_allclose(alone.length_m[0], all_.length_m[7], rtol=1e-12)
