@@ -96,40 +96,27 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
 
     An effect that is declared and unknown is fitted like any unknown.
     """
-    estimated = measurements.estimated_noise
-    if estimated and measured.has_poses:  # by a diagnosis before: nobody declared it
-        measurements = replace(
-            measurements,
-            length_noise_m=None if "length" in estimated else measurements.length_noise_m,
-            tension_noise_N=None if "tension" in estimated else measurements.tension_noise_N,
-        )
+    measurements = _less_estimated_noise(measurements, measured)
     # The diagnosis asks no strength of the cable, and only laws of plugins ask its diameter.
     machine = Machine(study.robot.at_rest, measurements.cable(), surroundings=study.surroundings)
     declared = declared_settings(study, machine)
-    of_sessions = [
-        replace(setting, effect=setting.effect.of_session(k))
-        for k in range(1, len(measurements.sessions) + 1)
-        for setting in declared_settings(
-            replace(study, effects=study.effects_of_session(k)), machine
-        )
-    ]
+    built = as_built(machine, declared)
     if not measured.has_poses and np.isnan(measured.poses.position_m).any():
         assert study.workspace is not None  # the config has been checked
-        poses = first_poses(as_built(machine, declared), measured, study.workspace.region)
-        measured = replace(measured, poses=poses)
-    fixed = [s for s in (*declared, *of_sessions) if not is_unknown(s.effect, measurements)]
-    declared_keys = {setting.effect.key for setting in fixed}
-    known = study.known_effects.of(as_built(machine, declared))
-    known = with_those_of_sessions(known, measurements)
-    effects = [e for e in known if e.key not in declared_keys]
+        measured = replace(measured, poses=first_poses(built, measured, study.workspace.region))
+    settings = [*declared, *_of_sessions(study, measurements, machine)]
+    fixed = [s for s in settings if not is_unknown(s.effect, measurements)]
+    fixed_effects = {setting.effect.key: setting.effect for setting in fixed}
+    known = with_those_of_sessions(study.known_effects.of(built), measurements)
+    effects = [e for e in known if e.key not in fixed_effects]
     recorded = _recorded(study, measured)
-    if as_built(machine, declared).robot.pulley_radius_m or (
-        "pulley_radius" in measurements.all_unknown
-    ):
+    if built.robot.pulley_radius_m or "pulley_radius" in measurements.all_unknown:
         recorded |= {"pulleys"}
-    skipped = {e.key: _missing(e, recorded) or _too_few(e, measured) for e in effects}
-    if measurements.sessions:
-        skipped |= {effect.key: GOES_ON for effect in effects if goes_on(effect)}
+    ongoing = [e for e in (*effects, *fixed_effects.values()) if goes_on(e)]
+    stopped = {e.key: GOES_ON for e in ongoing if measurements.sessions}
+    skipped = {
+        e.key: stopped.get(e.key) or _missing(e, recorded) or _too_few(e, measured) for e in effects
+    }
     visible = [e for e in effects if not skipped[e.key]]
     given = tuple(
         _as_unknown(_less_known_zero(e, fixed), measurements, machine)
@@ -143,12 +130,9 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     others = [e for e in visible if e.key not in given_keys]
     beside = [beside_given(e, given, len(measurements.sessions)) for e in others]
     skipped |= {e.key: "is a part of what is unknown" for e in beside if not e.parameters}
-    # On the machine an effect acts unseen; only wind has to be told.
-    in_sight = [s for s in fixed if s.effect.on_machine is None or "wind" in s.effect.needs]
-    lacking = {s.effect.key: _missing(s.effect, recorded) for s in in_sight}
-    if measurements.sessions:
-        lacking |= {s.effect.key: GOES_ON for s in fixed if goes_on(s.effect)}
-    idle = [s for s in fixed if lacking.get(s.effect.key)]
+    lacking = {
+        e.key: stopped.get(e.key) or _missing_in_sight(e, recorded) for e in fixed_effects.values()
+    }
     return Case(
         study,
         measurements,
@@ -157,9 +141,32 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         candidates=tuple(e for e in beside if e.parameters),
         given=given,
         skipped=tuple((key, why) for key, why in skipped.items() if why),
-        fixed=tuple(s for s in fixed if s not in idle),
-        idle=tuple((s.effect.key, lacking[s.effect.key]) for s in idle),
+        fixed=tuple(s for s in fixed if not lacking[s.effect.key]),
+        idle=tuple((key, why) for key, why in lacking.items() if why),
     )
+
+
+def _less_estimated_noise(measurements: Measurements, measured: Measured) -> Measurements:
+    """Return them without a noise that a diagnosis estimated before: nobody declared it."""
+    estimated = measurements.estimated_noise
+    if not (estimated and measured.has_poses):
+        return measurements
+    return replace(
+        measurements,
+        length_noise_m=None if "length" in estimated else measurements.length_noise_m,
+        tension_noise_N=None if "tension" in estimated else measurements.tension_noise_N,
+    )
+
+
+def _of_sessions(study: Study, measurements: Measurements, machine: Machine) -> list[Setting]:
+    """Return the effects that are declared of single sessions."""
+    return [
+        replace(setting, effect=setting.effect.of_session(k))
+        for k in range(1, len(measurements.sessions) + 1)
+        for setting in declared_settings(
+            replace(study, effects=study.effects_of_session(k)), machine
+        )
+    ]
 
 
 _FAR_M = 1e6
@@ -197,6 +204,15 @@ def _missing(effect: Effect, recorded: frozenset[str]) -> str:
     """Return what the data lack for an effect to show; empty where it shows."""
     missing = sorted(effect.needs - recorded)
     return f"needs {NEEDS[missing[0]]}" if missing else ""
+
+
+def _missing_in_sight(effect: Effect, recorded: frozenset[str]) -> str:
+    """Return what a declared effect lacks: on the machine it acts unseen, only wind has to be told.
+
+    Empty where it acts.
+    """
+    is_in_sight = effect.on_machine is None or "wind" in effect.needs
+    return _missing(effect, recorded) if is_in_sight else ""
 
 
 def _too_few(effect: Effect, measured: Measured) -> str:

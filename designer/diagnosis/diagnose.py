@@ -95,15 +95,33 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     # Whatever is decided on the way is decided without them: noise, effects, what is withdrawn.
     seen = replace(case, measured=measured.without_readings(heldout))
     if not measured.has_poses:
-        noise = first_noise(seen.measurements, seen.measured, seen.predictor(), ~heldout)
-        unfitted = Problem(seen.measured, seen.predictor(), noise)
-        hidden = dict(taken_up(unfitted, (*seen.given, *seen.candidates), (), ~heldout))
+        hidden = _taken_up(seen, ~heldout)
         case, seen = _without(case, hidden), _without(seen, hidden)
     outcome = _with_settled_noise(seen, ~heldout, progress)
     problem = Problem(measured, predict, outcome.problem.noise)
     outcome, gains = keep_what_helps(outcome, problem, heldout, progress)
     # What is told of the model shall not depend on the path that the search took to it.
     problem = replace(problem, predict=predict.at(measured))
+    return _told(case, outcome, problem, gains, heldout, progress)
+
+
+def _taken_up(seen: Case, rows: BoolArray) -> dict[str, str]:
+    """Return the effects that estimated poses take up, each with the reason."""
+    noise = first_noise(seen.measurements, seen.measured, seen.predictor(), rows)
+    unfitted = Problem(seen.measured, seen.predictor(), noise)
+    return dict(taken_up(unfitted, (*seen.given, *seen.candidates), (), rows))
+
+
+def _told(
+    case: Case,
+    outcome: Outcome,
+    problem: Problem,
+    gains: Mapping[str, Gain],
+    heldout: BoolArray,
+    progress: Pace,
+) -> Diagnosis:
+    """Return all that is told of the model that a search ended with."""
+    measured = case.measured
     base = fit(outcome.searcher.problem, case.given, ~heldout) if outcome.found else outcome.fit
     first, last = base.settings, outcome.fit.settings
     before, after = problem.residual(first), problem.residual(last)
