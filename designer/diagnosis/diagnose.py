@@ -29,8 +29,9 @@ from designer.diagnosis.hold import (
     structure_left,
 )
 from designer.diagnosis.problem import Problem, imbalance_of
+from designer.diagnosis.proposals import Proposal, propose
 from designer.diagnosis.result import Diagnosis, Estimate, Finding
-from designer.diagnosis.search import Proposal, propose, without
+from designer.diagnosis.search import without
 from designer.diagnosis.statistics import heldout_rows, without_outliers
 from designer.diagnosis.structure import covariates_of, smooth_correction, whereabouts
 from designer.effects.effect import Effect

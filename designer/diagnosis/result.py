@@ -14,7 +14,8 @@ from designer import __version__
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.calibration import Calibration
 from designer.diagnosis.errors_of import Error, Foretold, Outlier, SessionError, Stage
-from designer.diagnosis.search import Proposal, Step
+from designer.diagnosis.proposals import Proposal
+from designer.diagnosis.search import Step
 from designer.diagnosis.structure import Correction, Structure, Whereabouts
 from designer.documents.plain import (
     DIAGNOSIS_FORMAT,

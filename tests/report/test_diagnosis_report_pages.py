@@ -17,6 +17,7 @@ from designer.arrays import frozen_array
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.problem import Predictor
+from designer.diagnosis.proposals import Proposal
 from designer.diagnosis.result import (
     MOST_SCATTER,
     Diagnosis,
@@ -26,7 +27,6 @@ from designer.diagnosis.result import (
     Use,
     Withdrawn,
 )
-from designer.diagnosis.search import Proposal
 from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED
