@@ -19,6 +19,7 @@ from designer.model.duty import RUNNING_ROPE, SOURCE, DutyClass
 from designer.model.load_case import EACH, LoadCase
 from designer.model.machine import TEMPERATE, Machine, Surroundings
 from designer.model.measurements import Measurements
+from designer.model.price_list import PriceList
 from designer.model.robot import Poses, Robot
 from designer.model.rope_life import RopeLife
 from designer.model.uncertainty import Uncertainty
@@ -105,6 +106,8 @@ class Selection:
         Mechanism group, which gives the safety factor of running ropes; ``none`` for none.
     rope_life : RopeLife or None
         How many bends ropes bear, and how many they shall.
+    price_list : PriceList or None
+        Offers that come before the prices of grades.
     """
 
     grades: tuple[str, ...] | None = None
@@ -117,6 +120,7 @@ class Selection:
     limits: RopeLimits = field(default_factory=RopeLimits)
     duty_class: DutyClass = "none"
     rope_life: RopeLife | None = None
+    price_list: PriceList | None = None
 
     def __post_init__(self) -> None:
         checked.check_fields(self)

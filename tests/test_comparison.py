@@ -109,6 +109,46 @@ def test_a_result_without_inputs_says_so(results) -> None:
     assert "did not write down its inputs" in html
 
 
+def priced(cost: float | None, currency: str | None, estimate: bool = False) -> dict:
+    """Return what a result has of a price."""
+    borrowed = {"year": 2024, "low": 0.5} if estimate else None
+    selection = {"currency": currency, "price_estimate": borrowed, "chosen": {"cost": cost}}
+    return {"selection": selection, "provenance": {}}
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "label", "values", "relative"),
+    [
+        (priced(8.0, "EUR"), priced(10.0, "EUR"), "cost [EUR]", (8.0, 10.0), 0.25),
+        (
+            priced(8.0, "USD", estimate=True),
+            priced(10.0, "USD"),
+            "cost [USD], a borrowed estimate in A",
+            (8.0, 10.0),
+            0.25,
+        ),
+        (
+            priced(8.0, "USD", estimate=True),
+            priced(10.0, "EUR"),
+            "cost, a borrowed estimate in A",
+            ("8 USD", "10 EUR"),
+            None,
+        ),
+        (
+            priced(8.0, "USD", estimate=True),
+            priced(4.0, "USD", estimate=True),
+            "cost [USD], a borrowed estimate in A and B",
+            (8.0, 4.0),
+            -0.5,
+        ),
+        (priced(None, None), priced(4.0, "EUR"), "cost [EUR]", (None, 4.0), None),
+    ],
+)
+def test_costs_have_a_currency_and_say_what_is_borrowed(a, b, label, values, relative) -> None:
+    (line,) = (one for one in compare(a, b).answers if one.path == "selection.chosen.cost")
+    assert (line.label, (line.a, line.b), line.relative) == (label, values, relative)
+
+
 def test_results_with_hardly_anything_in_them() -> None:
     found = compare({"provenance": {}}, {"provenance": {}, "selection": [], "pose": None})
     assert found.to_dict()["names"] == [None, None]

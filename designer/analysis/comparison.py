@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from designer.documents.plain import Json
 
 _TOLD = 1e-9
 """Relative difference below which numbers are the same: what a search at a flat optimum leaves."""
+_COST = "selection.chosen.cost"
 _ANSWERS = {
     "positive": "all holds as asked",
     "answer.verdict": "answer",
@@ -22,7 +23,7 @@ _ANSWERS = {
     "selection.chosen.linear_mass_kg_per_m": "mass per length",
     "selection.chosen.axial_stiffness_N": "axial stiffness",
     "selection.chosen.drum_diameter_m": "drum diameter",
-    "selection.chosen.cost": "cost",
+    _COST: "cost",
     "selection.chosen.worst_pose": "worst position of the chosen rope",
     "answer.total_mass_kg": "mass of all cables",
     "pose.sagging.status": "configured pose",
@@ -142,22 +143,39 @@ def compare(a: Mapping[str, Any], b: Mapping[str, Any]) -> Comparison:
     has_inputs = all(isinstance(result.get("inputs"), Mapping) for result in (a, b))
     inputs = _lines(a["inputs"], b["inputs"]) if has_inputs else iter(())
     of_a, of_b = dict(_flat(a)), dict(_flat(b))
-    answers = tuple(
-        ComparisonLine(path, label, of_a.get(path), of_b.get(path))
-        for path, label in _ANSWERS.items()
-        if of_a.get(path) is not None or of_b.get(path) is not None
-    )
     remaining = (line for line in _lines(of_a, of_b) if line.path not in _ANSWERS)
     return Comparison(
         a,
         b,
         tuple(line for line in inputs if line.differs),
         has_inputs,
-        answers,
+        tuple(_answers(of_a, of_b)),
         tuple(_unmet(a, b)),
         tuple(line for line in _lines(_products(a), _products(b)) if line.differs),
         tuple(line for line in remaining if line.differs),
     )
+
+
+def _answers(of_a: Mapping[str, Any], of_b: Mapping[str, Any]) -> Iterator[ComparisonLine]:
+    """Yield what a reader compares first and one of the two has."""
+    for path, label in _ANSWERS.items():
+        line = ComparisonLine(path, label, of_a.get(path), of_b.get(path))
+        if line.a is not None or line.b is not None:
+            yield _with_currency(line, of_a, of_b) if path == _COST else line
+
+
+def _with_currency(
+    line: ComparisonLine, of_a: Mapping[str, Any], of_b: Mapping[str, Any]
+) -> ComparisonLine:
+    """Return the costs with their currency, as texts where there are two, and what is borrowed."""
+    sides = [(name, side) for name, side in (("A", of_a), ("B", of_b)) if side.get(_COST)]
+    borrowed = [name for name, side in sides if side.get("selection.price_estimate.year")]
+    estimate = f", a borrowed estimate in {' and '.join(borrowed)}" if borrowed else ""
+    currencies = {side["selection.currency"] for _, side in sides}
+    if len(currencies) == 1:
+        return replace(line, label=f"{line.label} [{currencies.pop()}]{estimate}")
+    a, b = (f"{side[_COST]:.4g} {side['selection.currency']}" for _, side in sides)
+    return replace(line, label=line.label + estimate, a=a, b=b)
 
 
 def _lines(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[ComparisonLine]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from designer.arrays import FloatArray
 from designer.documents.plain import Json, csv_text, plain, record
+from designer.model.price_list import PriceList
 from designer.model.space import turn_of
 from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate
@@ -35,6 +36,7 @@ def selection_dict(selection: SelectionResult | None, choice: GroupChoice | None
         "objectives": selection.objectives,
         "currency": selection.currency,
         "price_estimate": selection.price_estimate,
+        "price_list": selection.price_list and _prices(selection.price_list),
         "chosen": None if chosen is None else rows[chosen],
         "reason": selection.reason,
         "pareto": [rows[c] for c in selection.front],
@@ -47,6 +49,15 @@ def selection_dict(selection: SelectionResult | None, choice: GroupChoice | None
         else [],
         "groups": [] if choice is None else list(_groups(choice.chosen)),
         "group_choice": choice,
+    }
+
+
+def _prices(price_list: PriceList) -> Json:
+    return {
+        "file": price_list.name,
+        "currency": price_list.currency,
+        "dates": price_list.dates,
+        "prices": len(price_list.offers),
     }
 
 

@@ -89,7 +89,7 @@ def _print_summary(dataset: xr.Dataset) -> None:
 
     from designer.analysis.result_json import evaluates_answer
     from designer.cli.terminal import bare_table, show
-    from designer.report.sweep import NOT_EVALUATED
+    from designer.report.sweep import NOT_EVALUATED, unit_of
 
     table = bare_table(
         "", "least", "median", "most", "points", title=_points(dataset.sizes["point"])
@@ -100,7 +100,9 @@ def _print_summary(dataset: xr.Dataset) -> None:
         )
         if len(values):
             figures = (np.min(values), np.median(values), np.max(values))
-            table.add_row(escape(str(name)), *(f"{x:.5g}" for x in figures), str(len(values)))
+            unit = unit_of(column.attrs)
+            label = f"{name} [{unit}]" if unit else str(name)
+            table.add_row(escape(label), *(f"{x:.5g}" for x in figures), str(len(values)))
     if table.row_count:
         show(table)
     if not evaluates_answer(str(name) for name in dataset.filter_by_attrs(role="kept")):

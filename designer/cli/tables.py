@@ -73,7 +73,7 @@ def summary_rows(analysis: Analysis) -> Iterator[Row]:
         )
         yield f"  {escape(need.governing.case.name)}", text
     if analysis.groups is not None:
-        yield from _summary_of_groups(analysis.groups)
+        yield from _summary_of_groups(analysis.groups, analysis.selection)
     for label, text in analysis.hanging.notes():
         yield label, bad(text)
     if analysis.selection is not None:
@@ -165,7 +165,7 @@ def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:
         yield f"  {requirement.title.lower()}", bad(escape(words))
 
 
-def _summary_of_groups(choice: GroupChoice) -> Iterator[Row]:
+def _summary_of_groups(choice: GroupChoice, selection: SelectionResult | None) -> Iterator[Row]:
     chosen = choice.chosen
     if not chosen.is_found:
         yield "groups", f"{bad('none')}: {escape(choice.proof_sentence)}"
@@ -186,7 +186,9 @@ def _summary_of_groups(choice: GroupChoice) -> Iterator[Row]:
         yield "  groups' mass", f"{mass}; {gap}"
     else:  # what is proved is told of what was minimised
         yield "  groups' mass", mass
-        yield "  groups' cost", f"{choice.total:.4g} {choice.unit} in all; {gap}"
+        is_estimated = selection is not None and selection.price_estimate is not None
+        estimate = ", a borrowed estimate" if is_estimated else ""
+        yield "  groups' cost", f"{choice.total:.4g} {choice.unit} in all{estimate}; {gap}"
 
 
 def print_pose(study: Study, pose: PoseAnalysis) -> None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +20,7 @@ from designer.grades.plain import Misfit
 from designer.plugins.find import OWN_NAMES, Offer, Plugins, ask, find_plugins
 
 if TYPE_CHECKING:
+    from designer.model.price_list import PriceList
     from designer.study import Study  # geometry, which a list of grades does not need
 
 MOST_PROBLEMS_OF_A_SOURCE = 20
@@ -89,8 +91,31 @@ class Catalogue:
             for k, grade in enumerate(grades or ())
             if grade not in ids
         ]
+        price_list = study.selection.price_list if study.selection else None
+        if price_list is not None and not faults:
+            faults = [*self._faults_of_prices(study, price_list)]
         if faults:
             raise InputError(faults)
+
+    def _faults_of_prices(self, study: Study, price_list: PriceList) -> Iterator[Fault]:
+        """Yield what a price list has that no grade here is, or that it prices nothing allowed."""
+        by_id = {grade.id: grade for grade in self.grades}
+        for offer in price_list.offers:
+            refuse = partial(Fault, str(price_list.path), offer.line)
+            grade = by_id.get(offer.grade)
+            if grade is None:
+                yield refuse("grade", *self.explain_unknown(offer.grade))
+            elif not any(offer.is_for(size.id, size.diameter_m) for size in grade.sizes):
+                sizes = [size.id for size in grade.sizes]
+                alike = " or ".join(difflib.get_close_matches(offer.size, sizes, n=4, cutoff=0.0))
+                problem = f"the grade '{grade.id}' has no size {offer.size}"
+                expected = f"such as {alike}; `designer catalog show {grade.id}` has all"
+                yield refuse("size", problem, expected)
+        named = study.selection.grades if study.selection else None
+        offered = [by_id[offer.grade] for offer in price_list.offers if offer.grade in by_id]
+        if not any(g.id in named if named else not g.why_only_by_name for g in offered):
+            problem = f"{price_list.name} has no price of a grade that the study allows"
+            yield study.source.fault("selection.prices", problem, "rows of these grades")
 
     def explain_unknown(self, grade_id: str) -> tuple[str, str]:
         """Return what is wrong with an id that no grade has, and what was expected."""

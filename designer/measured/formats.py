@@ -54,22 +54,33 @@ def read_table(file: BinaryIO, name: str, most_texts: int = MOST_ALIKE) -> LogTa
     InputError
         If it is too large, is in none of the formats, is empty, or has no head.
     """
+    rows, digest = cells_of(file, name)
+    table = table_of(rows, name, most_texts)
+    return replace(table, sha256=digest())
+
+
+def cells_of(file: BinaryIO, name: str) -> tuple[Rows, Callable[[], str]]:
+    """Return the rows of an open file as texts, and what tells the SHA-256 of all that was read.
+
+    Raises
+    ------
+    InputError
+        If it is too large, or the library that reads it is missing; the rows, as they are read, if
+        it is none of the formats.
+    """
     digest = hashlib.sha256()
     start = file.read(max(len(kind.start) for kind in _FORMATS))
     file.seek(0)
     kind = next((kind for kind in _FORMATS if start.startswith(kind.start)), None)
     if kind is None:
-        table = table_of(text_rows(file, name, digest.update), name, most_texts)
-    else:
-        content = file.read(LARGEST_FILE_BYTES + 1)
-        if len(content) > LARGEST_FILE_BYTES:
-            limit = f"at most {LARGEST_FILE_BYTES / 1e6:g} MB"
-            refuse(name, None, "the file is too large", limit)
-        digest.update(content)
-        library = _library(kind.module, kind.extra, kind.called, name)
-        rows = _checked(kind, kind.rows(library, io.BytesIO(content)), name)
-        table = table_of(rows, name, most_texts)
-    return replace(table, sha256=digest.hexdigest())
+        return text_rows(file, name, digest.update), digest.hexdigest
+    content = file.read(LARGEST_FILE_BYTES + 1)
+    if len(content) > LARGEST_FILE_BYTES:
+        limit = f"at most {LARGEST_FILE_BYTES / 1e6:g} MB"
+        refuse(name, None, "the file is too large", limit)
+    digest.update(content)
+    library = _library(kind.module, kind.extra, kind.called, name)
+    return _checked(kind, kind.rows(library, io.BytesIO(content)), name), digest.hexdigest
 
 
 def _library(module: str, extra: str, called: str, name: str) -> Any:

@@ -50,7 +50,7 @@ class SweptPoints:
 
         def axes(role: str) -> dict[str, Axis]:
             arrays = dataset.filter_by_attrs(role=role).items()
-            return {str(k): Axis.of(str(k), v.attrs.get("units", ""), v.values) for k, v in arrays}
+            return {str(k): Axis.of(str(k), unit_of(v.attrs), v.values) for k, v in arrays}
 
         kept = axes("kept")
         numbers = {name: axis for name, axis in kept.items() if not axis.labels}
@@ -68,6 +68,12 @@ class SweptPoints:
             front,
             holds,
         )
+
+
+def unit_of(attributes: Mapping[str, str]) -> str:
+    """Return the unit of a variable of a store, and whether it is an estimate."""
+    estimated = "estimated" if "estimate" in attributes else ""
+    return ", ".join(filter(None, (attributes.get("units", ""), estimated)))
 
 
 def pareto_front(values: FloatArray, counts: BoolArray) -> BoolArray:

@@ -1,6 +1,6 @@
-"""What ropes cost, about, where no grade of a study has a price of its own.
+"""What ropes cost: by the study's own list, by their grades, or about, where neither has a price.
 
-Curves of the price of a metre over the diameter, c₁ d + c₂ d², for mooring ropes (MoorPy,
+Then curves of the price of a metre over the diameter, c₁ d + c₂ d², for mooring ropes (MoorPy,
 library/MoorProps_newCosts.yaml, 2024; OMAE2025-156384). Ropes of machines are sold elsewhere and in
 other lengths, hence the wide interval, which is ours.
 """
@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from designer.grades.grade import Grade
+from designer.model.price_list import Offer, PriceList
 from designer.selection.candidate import common_currency, is_allowed
 from designer.study import Selection
 
@@ -44,15 +45,36 @@ _THICK_M = 0.05
 def with_prices(
     grades: Sequence[Grade], selection: Selection
 ) -> tuple[Sequence[Grade], PriceEstimate | None]:
-    """Return the grades with borrowed prices, and what these are, where the cost is an objective.
+    """Return the grades with the prices that a study compares, and what is borrowed of these.
 
-    The grades as they are, and None, where it is not, or where one that the study allows has a
-    price of its own. Materials without a curve stay without a price.
+    The prices of the study's own list come before those of grades; where there are such, sizes
+    priced in another currency have none. Borrowed are prices where the cost is an objective and no
+    grade that the study allows has a price of its own; materials without a curve stay without.
     """
+    if selection.price_list is not None:
+        return [_listed(grade, *_offers(selection.price_list, grade.id)) for grade in grades], None
     allowed = [grade for grade in grades if is_allowed(grade, selection.grades)]
     if "cost" not in selection.objectives or common_currency(allowed) is not None:
         return grades, None
     return [_estimated(grade) for grade in grades], BORROWED
+
+
+def _offers(price_list: PriceList, grade_id: str) -> tuple[str, tuple[Offer, ...]]:
+    """Return the currency of a list and its offers of one grade."""
+    return price_list.currency, tuple(o for o in price_list.offers if o.grade == grade_id)
+
+
+@lru_cache(maxsize=2**14)  # the same sizes whenever asked: candidates are told apart by them
+def _listed(grade: Grade, currency: str, offers: tuple[Offer, ...]) -> Grade:
+    is_comparable = grade.currency == currency
+    if not offers and (is_comparable or grade.currency is None):
+        return grade
+    sizes = []
+    for size in grade.sizes:
+        prices = (o.price_per_m for o in offers if o.is_for(size.id, size.diameter_m))
+        own = size.price_per_m if is_comparable else None
+        sizes.append(replace(size, price_per_m=next(prices, own)))
+    return replace(grade, sizes=tuple(sizes), currency=currency)
 
 
 def offered(grades: Sequence[Grade], selection: Selection) -> list[Grade]:

@@ -8,6 +8,7 @@ from typing import ClassVar, Literal
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Material
 from designer.model.load_case import STATIC
+from designer.model.price_list import PriceList
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.selection.candidate import Candidate
@@ -120,6 +121,8 @@ class SelectionResult:
         Of the costs; None where nothing has a price.
     price_estimate : PriceEstimate or None
         What the prices are, where they are borrowed.
+    price_list : PriceList or None
+        The study's own prices, which come before those of grades.
     not_tried : tuple of NotTried
         What was not solved, and why.
     proof : Proof or None
@@ -137,6 +140,7 @@ class SelectionResult:
     objectives: tuple[Objective, ...] = ("mass",)
     currency: str | None = None
     price_estimate: PriceEstimate | None = None
+    price_list: PriceList | None = None
     not_tried: tuple[NotTried, ...] = ()
     usable: Usable | None = None
     proof: Proof | None = None

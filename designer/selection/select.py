@@ -100,6 +100,7 @@ def select(
         objectives=selection.objectives,
         currency=run.currency,
         price_estimate=price_estimate,
+        price_list=selection.price_list,
         not_tried=tuple(not_tried),
         usable=_usable(robot, workspace, outcomes, chosen) if explains else None,
         proof=None if chosen is None else run.proofs.get(chosen),

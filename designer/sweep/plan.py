@@ -27,6 +27,9 @@ from designer.documents.document import (
 from designer.documents.fields import FreeMapping, Text, WholeNumber, different, list_of
 from designer.documents.section import Section, schema_faults
 from designer.errors import Fault, InputError
+from designer.selection.candidate import common_currency
+from designer.selection.prices import offered, with_prices
+from designer.study import Study
 from designer.sweep.point import Base, value_at, why_no_value
 from designer.units import describe
 
@@ -111,6 +114,9 @@ class SweepPlan:
         Of each path that is kept, whether it is a number (`float`) or a text (`str`).
     goals : mapping
         Of numbers that are kept: 1 for the less the better, -1 for the more the better.
+    attributes : mapping
+        Of prices that are kept: their currency as ``units``, and ``estimate`` where the study as it
+        is borrows them.
     digest : str
         SHA-256 of all that the results depend on.
     """
@@ -119,6 +125,7 @@ class SweepPlan:
     columns: tuple[SweptField, ...]
     kinds: Mapping[str, type]
     goals: Mapping[str, int]
+    attributes: Mapping[str, Mapping[str, str]]
     digest: str
 
     @property
@@ -232,7 +239,25 @@ def read_sweep(path: Path, with_plugins: bool) -> SweepPlan:
     files += [sha256 for _, sha256 in study.source.tables]
     origin = [document.root.as_written(), base.document.sha256, *files, __version__]
     digest = hashlib.sha256(json.dumps(origin).encode()).hexdigest()
-    return SweepPlan(base, columns, kinds, goals, digest)
+    attributes = _price_attributes(study, base, section.keep)
+    return SweepPlan(base, columns, kinds, goals, attributes, digest)
+
+
+def _price_attributes(study: Study, base: Base, keep: Sequence[str]) -> dict[str, dict[str, str]]:
+    """Return the currency of each price that is kept, and what is borrowed."""
+    selection, names = study.selection, [name for name in keep if name.endswith(".cost")]
+    if selection is None or not names:
+        return {}
+    grades = base.catalogue(study).grades
+    currency, (_, estimate) = (
+        common_currency(offered(grades, selection)),
+        with_prices(grades, selection),
+    )
+    attributes = {} if currency is None else {"units": currency}
+    if estimate is not None:
+        share = f"may be {estimate.low:g} to {estimate.high:g} times as much"
+        attributes["estimate"] = f"borrowed, of {estimate.year}, {share}: {estimate.source}"
+    return dict.fromkeys(names, attributes)
 
 
 def _refuse(faults: Sequence[Fault]) -> None:

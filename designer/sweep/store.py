@@ -143,7 +143,8 @@ def _lay_out(path: Path, plan: SweepPlan) -> None:
         for name, kind in plan.kinds.items():
             fill = None if kind is str else math.nan
             goal = {1: "minimise", -1: "maximise"}.get(plan.goals.get(name, 0), "")
-            add(name, kind, chunk, {"role": "kept", **({"goal": goal} if goal else {})}, fill)
+            attributes = {"role": "kept", **({"goal": goal} if goal else {})}
+            add(name, kind, chunk, {**attributes, **plan.attributes.get(name, {})}, fill)
         add("reason", str, chunk, {"long_name": "why there is no result, or none that holds"}, None)
         add("done", bool, chunk, {}, None)
         zarr.consolidate_metadata(unfinished, zarr_format=2)

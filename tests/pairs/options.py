@@ -176,8 +176,16 @@ POSES: Mapping[str, list[Row]] = {
 """Files of poses, with orientations for what can turn."""
 
 
+PRICES = "prices.csv"
+"""A price list, in which the thickest wire rope is the cheapest."""
+
+
 def file_text(name: str) -> str:
     """Return what a file beside a study holds."""
+    if name == PRICES:
+        sizes = [("3", 9.0), ("5", 7.0), ("8", 5.0)]
+        rows = [[WIRE["id"], size, price, "USD", 2026] for size, price in sizes]
+        return _csv(["grade", "diameter_mm", "price_per_m", "currency", "date"], rows)
     if name in PATHS:
         rows = [[t, *place] for t, place in zip((0.0, PATH_S), PATHS[name], strict=True)]
         return _csv(["time_s", *_AXES], rows)
@@ -203,8 +211,9 @@ def files_of(study: Text) -> list[str]:
         workspace.get("path"),
         workspace.get("poses"),
         facing.get("table") if isinstance(facing, dict) else None,
+        study.get("selection", {}).get("prices"),
     )
-    return [name for name in named if name in PATHS or name in POSES]
+    return [name for name in named if name == PRICES or name in PATHS or name in POSES]
 
 
 POINT = ("crane", "four")
@@ -541,6 +550,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("fitting", "end fittings", ALL, _set("selection.termination_efficiency", 0.9)),
     Option("groups", "groups of cables", ALL, _groups),
     Option("cost", "least cost", ALL, _set("selection.objectives", ["cost"])),
+    Option("prices", "price list", ALL, _set("selection.prices", PRICES)),
     Option(
         "pose",
         "configured pose",

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from ropes import rope
 
 from designer.grades.grade import Grade
+from designer.model.price_list import Offer, PriceList
 from designer.model.prism import Prism
 from designer.model.workspace import Workspace
 from designer.selection.prices import BORROWED, with_prices
@@ -75,3 +77,47 @@ def test_the_cheapest_is_chosen_and_said_to_be_estimated(fast_robot) -> None:
     by_mass = select(fast_robot, workspace, Selection(None, 2.0, ("mass",)), [steel, nylon])
     assert by_mass.chosen is not None
     assert (by_mass.chosen.grade.id, by_mass.price_estimate) == ("steel", None)
+
+
+def listed(*offers: Offer) -> Selection:
+    prices = PriceList(Path("prices.csv"), "EUR", offers)
+    return replace(BY_COST, price_list=prices)
+
+
+def test_a_list_comes_before_grades_and_estimates() -> None:
+    by_list = listed(
+        Offer("dollars", "10 mm", 0.0, 7.0, "2026", 2), Offer("euros", "", 0.06, 9.0, "2026", 3)
+    )
+    priced = [
+        rope(name, SIZES, material="steel", price_per_kg=3.0, currency=currency)
+        for name, currency in (("dollars", "USD"), ("euros", "EUR"), ("pounds", "GBP"))
+    ]
+    unpriced = of("steel")
+    grades, estimate = with_prices([*priced, unpriced], by_list)
+    assert estimate is None
+    assert [grade.currency for grade in grades] == ["EUR", "EUR", "EUR", None]
+    assert prices(grades[0]) == [7.0, None]  # its own is in another currency
+    assert prices(grades[1]) == [priced[1].sizes[0].price_per_m, 9.0]
+    assert prices(grades[2]) == [None, None]
+    assert grades[3] is unpriced
+    assert with_prices(priced, by_list)[0][0] is grades[0]
+
+
+def test_the_least_by_the_list_is_chosen(fast_robot) -> None:
+    triangle = fast_robot.exit_points_m[:, :2]
+    workspace = Workspace(Prism.over(triangle, 60.0, (-200.0, -80.0)), samples=100)
+    grades = [rope(name, [30.0, 34.0], material="steel") for name in ("first", "second")]
+    by_list = listed(
+        Offer("first", "30 mm", 0.0, 8.0, "2026", 2),
+        Offer("first", "34 mm", 0.0, 6.0, "2026", 3),
+        Offer("second", "34 mm", 0.0, 7.0, "2026", 4),
+    )
+    found = select(fast_robot, workspace, by_list, grades)
+    assert found.chosen is not None
+    assert found.chosen.ids == {"grade": "first", "size_id": "34 mm"}
+    assert (found.currency, found.price_estimate) == ("EUR", None)
+    assert found.price_list is by_list.price_list
+    length_m = float(found.chosen.verification.longest_m.sum())
+    assert found.chosen.figures.cost == pytest.approx(6.0 * length_m)
+    unpriced = next(c for c in found.candidates if c.ids == {"grade": "second", "size_id": "30 mm"})
+    assert unpriced.standing == "not_comparable"

@@ -58,9 +58,12 @@ def moved_to(folder: Path, text: str, document: Document, start: Path) -> str:
     return with_schema_moved(text, start, partial(path_from, folder))
 
 
-_TABLES = tuple(
-    ("workspace", *keys)
-    for keys in (("poses",), ("path",), ("path", "file"), ("orientation", "table"))
+_TABLES = (
+    ("selection", "prices"),
+    ("workspace", "poses"),
+    ("workspace", "path"),
+    ("workspace", "path", "file"),
+    ("workspace", "orientation", "table"),
 )
 
 

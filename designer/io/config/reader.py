@@ -21,9 +21,11 @@ from designer.io.config.machine import CableSection, LoadCaseSection
 from designer.io.config.places import Places, places_of
 from designer.io.config.regions import OrientationSection
 from designer.io.config.schema import SelectionSection, StudySection
+from designer.io.prices import read_prices
 from designer.model.cable import Material
 from designer.model.load_case import MOST_DIRECTIONS, LoadCase
 from designer.model.machine import Surroundings
+from designer.model.price_list import PriceList
 from designer.model.region import Region
 from designer.model.robot import Robot
 from designer.model.space import Orientations
@@ -84,6 +86,7 @@ def study_of(
     places = places_of(section, document, robot, material)
     if places.motion is not None:
         robot = replace(robot, platform=replace(robot.platform, motion=places.motion))
+    price_list, tables = _price_list(section, document)
     measurements, uncertainty = section.measurements, section.uncertainty
     lines = {path_text(keys): node.line for keys, node in document.root.walk()}
     given = _with_family(tuple(entries), material, family)
@@ -94,10 +97,10 @@ def study_of(
         name=section.name or path.stem,
         robot=robot,
         material=material,
-        source=StudySource(path, document.sha256, given, lines, places.tables),
+        source=StudySource(path, document.sha256, given, lines, (*places.tables, *tables)),
         pose=None if pose is None else pose.poses(),
         workspace=places.workspace,
-        selection=None if selection is None else selection.selection(),
+        selection=None if selection is None else selection.selection(price_list),
         load_cases=tuple(
             _load_case(document, index, robot, section, places)
             for index in range(len(section.load_cases))
@@ -114,6 +117,21 @@ def study_of(
         family=family,
         document=section.document.control(folder),
     )
+
+
+def _price_list(
+    section: StudySection, document: Document
+) -> tuple[PriceList | None, tuple[tuple[str, str], ...]]:
+    """Return the price list that a study names, if any, and the name and digest of its file."""
+    name = section.selection.prices if section.selection else None
+    if name is None:
+        return None, ()
+
+    def error(problem: str, expected: str) -> InputError:
+        return InputError([document.fault(("selection", "prices"), problem, expected)])
+
+    price_list, sha256 = read_prices(Path(document.name).parent / name, error)
+    return price_list, ((name, sha256),)
 
 
 def _session_effects(

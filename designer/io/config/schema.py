@@ -31,6 +31,7 @@ from designer.io.config.uncertainty import UncertaintySection
 from designer.model.duty import RUNNING_ROPE, DutyClass
 from designer.model.measurements import LogColumn, LogSession, Measurements, Reading
 from designer.model.motion import Ends
+from designer.model.price_list import PriceList
 from designer.model.region import Region, Sampling
 from designer.model.robot import Poses
 from designer.model.rope_life import RopeLife
@@ -273,6 +274,9 @@ class SelectionSection(Section):
     with a sheave, a least sheave over rope diameter by the class of the rope."""
     objectives: Objectives = ("mass", "drum_diameter", "max_tension")
     """What ropes are compared by; the first decides."""
+    prices: fields.Text | None = config_field("Price list")
+    """Prices of your own, a CSV file relative to this file with the columns grade, size (or
+    diameter_mm), price_per_m, currency and date; they come before all others."""
     termination_efficiency: fields.Efficiency = config_field("End fittings keep", 1.0)
     """Share of the breaking load that the end fittings keep: poured socket about 1, swaged
     0.95, steel ferrule 0.89, clips 0.8, wedge socket 0.75."""
@@ -300,8 +304,8 @@ class SelectionSection(Section):
         regions.only_one_of(given, ("safety_factor", "duty_class"), "the selection")
         return {**given, "safety_factor": factor}
 
-    def selection(self) -> Selection:
-        """Return how a product is chosen."""
+    def selection(self, price_list: PriceList | None) -> Selection:
+        """Return how a product is chosen, with the prices of its list."""
         groups = self.groups or {}
         return Selection(
             grades=None if self.grades == "all" else self.grades,
@@ -314,6 +318,7 @@ class SelectionSection(Section):
             max_distinct_products=self.max_distinct_products,
             limits=self.limits.limits(),
             rope_life=None if self.rope_life is None else self.rope_life.rope_life(),
+            price_list=price_list,
         )
 
 
