@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from designer.cli.catalog_new import catalog_new
 from designer.cli.options import WRONG_INPUT, AsJson, NoPlugins, argument, quantity_of
 from designer.errors import InputError, OutputError
 from designer.io.output import output_folder
@@ -145,6 +146,9 @@ def catalog_check(
     typer.echo(summary(catalogue) + ("" if catalogue.problems else ": no fault found"))
     if catalogue.problems:
         raise typer.Exit(WRONG_INPUT)
+
+
+catalog.command("new")(catalog_new)
 
 
 @catalog.command("new-plugin")

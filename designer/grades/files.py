@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from designer.documents.document import GRADE, read_document
+from designer.documents.document import GRADE, Document, read_document
 from designer.documents.section import reader_of, schema_faults
 from designer.errors import Fault, InputError
 from designer.grades.checks import find_flaws
@@ -39,7 +39,11 @@ def read_grade(path: Path) -> Grade:
     InputError
         If anything is wrong with it; carries every fault, in the order of the lines.
     """
-    document = read_document(path, GRADE)
+    return grade_of(read_document(path, GRADE), path.name)
+
+
+def grade_of(document: Document, file: str) -> Grade:
+    """Return the grade of a document that is, or is to be, in a file; raises as `read_grade`."""
     faults = list(document.faults)
     try:
         sheet = reader_of(GradeSheet).validate_python(_with_units(document.root.data()))
@@ -47,7 +51,7 @@ def read_grade(path: Path) -> Grade:
         faults += schema_faults(error, document, GradeSheet)
     else:
         values = {field.name: getattr(sheet, field.name) for field in fields(sheet)}
-        grade = Grade(**values, file=path.name)
+        grade = Grade(**values, file=file)
         faults += [document.fault(*flaw) for flaw in find_flaws(grade)]
     if faults:
         raise InputError(sorted(faults, key=lambda fault: fault.line or 0))

@@ -114,14 +114,17 @@ _MASS_OVER_AREA_KG_PER_M3 = (7500.0, 12000.0)  # of a strand about 8000, of a fi
 
 def proportion_flaws(grade: Grade) -> Iterator[Flaw]:
     """Yield what contradicts itself, or a rope of the grade's material."""
+    columns = [*flaws_over_diameter(grade)]
+    yield from columns or [*_strength(grade), *_metallic_areas(grade)] or _elasticity(grade)
+
+
+def flaws_over_diameter(grade: Grade) -> Iterator[Flaw]:
+    """Yield what is off the laws m = k d² and MBL = c d²: whole columns, else single figures."""
     bounds = bounds_of(grade)
     masses = ("linear_mass", [size.density_kg_per_m3 for size in grade.sizes])
     loads = ("minimum_breaking_load", [size.breaking_stress_Pa for size in grade.sizes])
-    columns = [
-        *_of_a_column(grade, *masses, bounds.density_kg_per_m3, "kg/m³"),
-        *_of_a_column(grade, *loads, bounds.breaking_stress_Pa, "Pa"),
-    ]
-    yield from columns or [*_strength(grade), *_metallic_areas(grade)] or _elasticity(grade)
+    yield from _of_a_column(grade, *masses, bounds.density_kg_per_m3, "kg/m³")
+    yield from _of_a_column(grade, *loads, bounds.breaking_stress_Pa, "Pa")
 
 
 def _of_a_column(

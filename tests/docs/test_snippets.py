@@ -36,7 +36,8 @@ _SELDOM = {
     "session",  # of logs of several sessions, which no page has
     # Of findings, each of which some studies have.
     *("policy", "depth_m", "inradius_m", "lowest_z_m"),
-    "year",  # of prices that are borrowed
+    *("year", "low", "high"),  # of prices that are borrowed
+    *("file", "dates", "prices"),  # of a price list
     *(
         "lowest_frequency_Hz",
         "share",

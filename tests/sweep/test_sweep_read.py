@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from sweep_cases import SWEEP, written
+from sweep_cases import STUDY, SWEEP, written
 
 from designer.errors import InputError
+from designer.report.sweep import unit_of
 from designer.sweep.plan import read_sweep
 
 IN_ONE_UNIT = (
@@ -87,3 +88,28 @@ def test_no_study_and_no_fields(tmp_path: Path) -> None:
     ]
     path = written(tmp_path, SWEEP.replace("crane.yaml", "none.yaml"))
     assert "none.yaml: there is no such file" in lines(path)[0]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("prices", "units", "estimate"),
+    [("", "USD", "borrowed, of 2024, may be 0.5 to 2 times"), ("prices: prices.csv, ", "EUR", "")],
+)
+def test_prices_that_are_kept_have_a_currency_and_say_what_is_borrowed(
+    tmp_path: Path, prices: str, units: str, estimate: str
+) -> None:
+    rows = "grade,size,price_per_m,currency,date\nunirope-6x36-iwrc-1960,8 mm,2,EUR,2026\n"
+    (tmp_path / "prices.csv").write_text(rows)
+    study = STUDY + (
+        "workspace: {region: {points: [[10, 6, 4]]}}\n"
+        f"selection: {{{prices}objectives: [cost], grades: [unirope-6x36-iwrc-1960]}}\n"
+    )
+    sweep = SWEEP.replace("pose.sagging.status", "selection.chosen.cost")
+    plan = read_sweep(written(tmp_path, sweep, study), with_plugins=False)
+    found = dict(plan.attributes["selection.chosen.cost"])
+    assert found.pop("units") == units
+    assert found.pop("estimate", "").startswith(estimate)
+    assert not found
+    assert unit_of(plan.attributes["selection.chosen.cost"]) == (
+        f"{units}, estimated" if estimate else units
+    )

@@ -1,0 +1,264 @@
+"""`designer catalog new`: from a maker's table to a grade file."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from designer.cli.options import NoPlugins, argument, output_option
+from designer.errors import Fault, InputError
+from designer.io.process import is_terminal
+
+if TYPE_CHECKING:
+    from designer.grades.grade import Grade
+    from designer.io.grade_draft import GradeDraft, OffTheLaw
+    from designer.io.maker_table import MakerTable
+
+_PAIRS = "Several times, once for each."
+
+
+def catalog_new(
+    table: Annotated[Path, argument("TABLE", "CSV file or Excel workbook, a row for each size.")],
+    output: Annotated[Path | None, output_option("TABLE's name with .yaml", "FILE")] = None,
+    column: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FIGURE=HEAD", help=f"Which column is what, by head or number. {_PAIRS}"
+        ),
+    ] = None,
+    unit: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FIGURE=UNIT", help=f"Unit, where the heads have none. {_PAIRS}"),
+    ] = None,
+    field: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="FIELD=TEXT", help=f"What the table does not say. {_PAIRS}"),
+    ] = None,
+    like: Annotated[
+        str | None,
+        typer.Option(
+            metavar="GRADE", help="Borrow stiffness, D/d and what else is not set from this grade."
+        ),
+    ] = None,
+    doubt: Annotated[
+        str, typer.Option(metavar="WHY", help="Keep rows that are off the law of d², marked so.")
+    ] = "",
+    no_plugins: NoPlugins = False,
+) -> bool:
+    """Make a grade file from a maker's table, checked as all grades are.
+
+    Columns are guessed from their heads, units from heads or a row of units below; on a terminal
+    you are asked for what is not known. FIGURE is id, diameter, minimum_breaking_load, linear_mass
+    or metallic_area; UNIT such as mm, in, kN, kgf, tonf, lbf, kg/m, kg/100m, lb/ft. FIELD is as in
+    the file: manufacturer, product, construction, core, finish, material, wire_grade, trust,
+    source.publisher, source.document, modulus.value and others.
+
+    Breaking load and mass follow MBL = c d² and m = k d² within a grade: a row that does not is
+    shown beside the law, and refused unless you say with --doubt why it may be so.
+
+    \b
+    Examples:
+      designer catalog new acme.csv
+      designer catalog new acme.csv --unit linear_mass=kg/100m --like unirope-6x36-iwrc-1960
+      designer catalog new acme.csv --column minimum_breaking_load="1960 N/mm2 [kN]" \\
+        --set manufacturer=Acme --set product=Quarry -o my-ropes/acme.yaml
+
+    Exit status 0: the file is whole. 1: it is written, and comments in it say what is missing. 2:
+    the table or an option is wrong, and nothing is written.
+    """
+    from designer.io.grade_draft import TEXTS, GradeDraft
+    from designer.io.maker_table import FIGURES, read_maker_table
+    from designer.io.output import write_new_file
+
+    columns, units = _pairs("--column", column, FIGURES), _pairs("--unit", unit, FIGURES[1:])
+    texts = _pairs("--set", field, TEXTS)
+    lender = None if like is None else _grade(like, no_plugins)
+    found = read_maker_table(table, columns, _choose if _asks() else lambda *_: None)
+    units = _units(found, units)
+    rows = found.rows(units)
+    _print_table(found, units, len(rows))
+    texts = _usual(table, lender) | texts
+    draft = GradeDraft(found, rows, units, texts, lender, doubt)
+    if _asks():
+        draft = _asked(draft, no_plugins)
+    draft = _with_doubt(draft)
+    if not draft.missing:
+        draft.grade()
+    path = output or table.with_suffix(".yaml").name
+    write_new_file(Path(path), draft.text())
+    _print_end(Path(path), draft)
+    return not draft.missing
+
+
+def _asks() -> bool:
+    """Tell whether somebody can be asked."""
+    return is_terminal(sys.stdin) and is_terminal(sys.stdout)
+
+
+def _pairs(
+    option: str, given: Sequence[str] | None, names: Sequence[str] | Mapping[str, str]
+) -> dict[str, str]:
+    """Return what an option names several times, such as ``diameter=mm``."""
+    pairs: dict[str, str] = {}
+    for text in given or ():
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not equals or not value:
+            raise InputError.at(option, f"{text!r} has no value", "such as diameter=…")
+        if name not in names:
+            raise InputError.at(option, f"{name!r} is not known", ", ".join(names))
+        if name in pairs:
+            raise InputError.at(option, f"{name} is given twice", "once")
+        pairs[name] = value
+    return pairs
+
+
+def _grade(grade_id: str, no_plugins: bool) -> Grade:
+    from designer.grades.registry import load_catalogue
+
+    return load_catalogue(with_plugins=not no_plugins).grade(grade_id)
+
+
+def _usual(table: Path, lender: Grade | None) -> dict[str, str]:
+    """Return what is usual where nobody says otherwise."""
+    grade_id = re.sub(r"[^a-z0-9]+", "-", table.stem.casefold()).strip("-")
+    usual = {"id": grade_id, "trust": "A", "source.document": table.name}
+    if lender is not None:
+        names = ("construction", "core", "finish", "material")
+        usual |= {name: value for name in names if (value := getattr(lender, name))}
+    return usual
+
+
+def _choose(figure: str, heads: Sequence[str], why: str) -> int | None:
+    """Ask which column a figure is; None for none of them."""
+    typer.echo(f"{figure}: {why}")
+    for number, head in enumerate(heads, start=1):
+        typer.echo(f"  {number}: {head}")
+    number = -1
+    while not 0 <= number <= len(heads):
+        number = typer.prompt("  Number (0 for none)", type=int, default=0)
+    return number - 1 if number else None
+
+
+def _units(table: MakerTable, named: Mapping[str, str]) -> dict[str, str]:
+    """Return the unit of each figure: as an option has it, as the table prints it, or as asked."""
+    from designer.grades.parts import DIMENSIONS
+    from designer.io.maker_table import SIZE, known_unit
+
+    units: dict[str, str] = {}
+    faults = []
+    for figure, column in table.columns.items():
+        if figure == SIZE:
+            continue
+        text = named.get(figure) or column.unit
+        if text is None and _asks():
+            example = DIMENSIONS[figure].example.partition(" ")[2]
+            text = typer.prompt(f"Unit of '{column.head}' ({figure}), such as {example}")
+        unit = None if text is None else known_unit(figure, text)
+        if unit is not None:
+            units[figure] = unit
+        elif text is None:
+            problem, expected = "the unit is not known", f"--unit {figure}=UNIT"
+            faults.append(table.fault(table.head_line, column.head, problem, expected))
+        else:
+            expected = f"a unit of {DIMENSIONS[figure].noun} such as '{DIMENSIONS[figure].unit}'"
+            faults.append(Fault("--unit", None, figure, f"{text!r} does not fit", expected))
+    faults += [
+        Fault("--unit", None, figure, "no column is known to be it", f"--column {figure}=HEAD")
+        for figure in named
+        if figure not in table.columns
+    ]
+    if faults:
+        raise InputError(faults)
+    return units
+
+
+def _print_table(table: MakerTable, units: Mapping[str, str], n_rows: int) -> None:
+    """Print which column was taken for what."""
+    typer.echo(f"{table.name}: {n_rows} sizes")
+    for figure, column in table.columns.items():
+        unit = f", in {units[figure]}" if figure in units else ""
+        typer.echo(f"  {figure}: column '{column.head}'{unit}")
+    if table.left_out:
+        typer.echo(f"  left out: {', '.join(table.left_out)}")
+
+
+def _asked(draft: GradeDraft, no_plugins: bool) -> GradeDraft:
+    """Return the draft with what somebody at the terminal says of it."""
+    from dataclasses import replace
+
+    from designer.io.grade_draft import ELASTICITY, OPTIONAL, TEXTS
+
+    texts, like = dict(draft.texts), draft.like
+    for name, meaning in TEXTS.items():
+        if name not in ELASTICITY:
+            default = texts.get(name, "" if name in OPTIONAL else None)
+            if name == "source.publisher":
+                default = default or texts["manufacturer"]
+            texts[name] = typer.prompt(f"{name} ({meaning})", default=default)
+    if like is None and "modulus.value" not in texts:
+        answer = typer.prompt("modulus (such as 62.7 GPa), or the id of a grade to borrow it from")
+        if re.match(r"\s*[\d.]", answer):
+            texts["modulus.value"] = answer
+        else:
+            like = _grade(answer.strip(), no_plugins)
+    if "modulus.value" in texts:
+        for name in ELASTICITY[1:]:
+            texts[name] = typer.prompt(f"{name} ({TEXTS[name]})", default=texts.get(name))
+    return replace(draft, texts=texts, like=like)
+
+
+def _with_doubt(draft: GradeDraft) -> GradeDraft:
+    """Return the draft where no row is off the law, or somebody says why; refuse it otherwise."""
+    from dataclasses import replace
+
+    from designer.io.grade_draft import refused
+
+    off = draft.off_the_law()
+    if not off:
+        return draft
+    _print_off(draft, off)
+    if not draft.doubt and _asks():
+        why = typer.prompt("Why they may be so, to keep them (empty to stop)", default="")
+        draft = replace(draft, doubt=why)
+    if not draft.doubt:
+        raise refused(off, draft.table)
+    return draft
+
+
+def _print_off(draft: GradeDraft, off: Sequence[OffTheLaw]) -> None:
+    """Print rows beside the law of d²."""
+    from designer.cli.terminal import bare_table, show
+
+    table = bare_table("line", "size", "", "printed", "by the law of d²", "off")
+    for item in off:
+        unit = draft.units[item.name]
+        table.add_row(
+            str(item.row.line),
+            item.row.id,
+            item.name,
+            f"{item.figure:g} {unit}",
+            f"{item.by_law:.4g} {unit}",
+            f"{item.figure / item.by_law - 1.0:+.0%}",
+        )
+    show(table)
+
+
+def _print_end(path: Path, draft: GradeDraft) -> None:
+    typer.echo(f"{path} written: {draft.texts.get('id', '')}, {len(draft.rows)} sizes.")
+    if draft.like is not None:
+        typer.echo(
+            f"  borrowed from {draft.like.id}: stiffness and what else is not printed; see the file"
+        )
+    if draft.missing:
+        typer.echo("Fill in what is missing, in the file or by --set, then check it:")
+        for name in draft.missing:
+            typer.echo(f"  {name}")
+    else:
+        typer.echo("It is checked. To use it: catalogues: in a study, or the user folder.")
+    typer.echo(f"Next:  designer catalog check {shlex.quote(str(path))}")

@@ -1,0 +1,326 @@
+"""A maker's table of sizes as it was printed: which column is what, in which unit."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import islice
+from pathlib import Path
+
+from designer.documents.opened import open_input, reason
+from designer.errors import Fault, InputError
+from designer.grades.grade import MOST_SIZES
+from designer.grades.parts import DIMENSIONS
+from designer.measured.formats import cells_of
+from designer.units import QuantityError, read_quantity
+
+SIZE = "id"
+FIGURES = (SIZE, *DIMENSIONS)
+NEEDED = ("diameter", "minimum_breaking_load", "linear_mass")
+_MOST_ABOVE = 20
+"""Lines above the head, such as a title."""
+_EXPECTED = "a CSV file or an Excel workbook with a row for each size"
+
+_HEADS = {
+    SIZE: r"size|item|article|artikel|part n|code|ref|bezeichnung|nenngr",
+    "diameter": r"diam|\bdia\b|durchmesser|[øØ⌀]|^d$|^d\b(?!/)|diamètre|diámetro",
+    "minimum_breaking_load": r"mbl|mbf|mbs|f ?min\b|break|bruch|strength|rupture|rotura",
+    "linear_mass": r"mass|weight|gewicht|masse|poids|peso|^wt\b",
+    "metallic_area": r"metal\w* (?:area|cross|sec)|metall\w*quer|cross.?section|querschnitt|^area",
+}
+"""What the heads of makers' tables have in them, in the languages of Europe's catalogues."""
+_NO_MINIMUM = re.compile(
+    r"average|mean\b|mittel|typical|aggregate|calculated|rechn|moyen|safe|work|wll|swl|proof|grade",
+    re.IGNORECASE,
+)
+"""Loads that are none at which no rope of the size breaks."""
+_UNITS = {
+    "diameter": {'"': "in", "''": "in", "inches": "in", "zoll": "in"},
+    "minimum_breaking_load": {
+        "lb": "lbf", "lbs": "lbf", "pounds": "lbf", "kg": "kgf", "kp": "kgf", "t": "tonf",
+        "tonnes": "tonf", "kips": "kip", "kn": "kN", "dan": "daN",
+    },
+    "linear_mass": {
+        "kg/%m": "kg/100m", "kg/100 m": "kg/100m", "lbs/ft": "lb/ft", "lbs/100ft": "lb/100ft",
+        "lbs/100 ft": "lb/100ft", "lb./ft.": "lb/ft", "lbs./ft.": "lb/ft", "kg/mtr": "kg/m",
+    },
+    "metallic_area": {"mm2": "mm^2", "mm²": "mm^2", "in2": "in^2", "sq mm": "mm^2"},
+}  # fmt: skip
+"""How tables write units, beside what every file may hold; a ton of whatever kind is asked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class FoundColumn:
+    """A column: its place from 0, its head, and the unit that the table prints, if it does."""
+
+    place: int
+    head: str
+    unit: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class MakerRow:
+    """A size: its line in the file, its id, and the text of each figure with a decimal point."""
+
+    line: int
+    id: str
+    figures: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class MakerTable:
+    """A table whose columns are known.
+
+    Parameters
+    ----------
+    name : str
+        The file, for messages.
+    head_line : int
+        Line of its heads.
+    heads : tuple of str
+        All of them.
+    columns : mapping
+        Of those that are used, by what they are: one of `FIGURES`.
+    cells : tuple
+        Line and cells of each row below.
+    """
+
+    name: str
+    head_line: int
+    heads: tuple[str, ...]
+    columns: Mapping[str, FoundColumn]
+    cells: tuple[tuple[int, list[str]], ...]
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Heads of the columns that are not used."""
+        used = {column.place for column in self.columns.values()}
+        return tuple(head for place, head in enumerate(self.heads) if head and place not in used)
+
+    def fault(self, line: int, column: str, problem: str, expected: str) -> Fault:
+        """Return what is wrong with a cell."""
+        return Fault(self.name, line, column, problem, expected)
+
+    def rows(self, units: Mapping[str, str]) -> tuple[MakerRow, ...]:
+        """Return the sizes, ascending in diameter; lines without any figure are passed over.
+
+        Raises
+        ------
+        InputError
+            With a fault for each cell that holds no number.
+        """
+        faults: list[Fault] = []
+        rows: list[MakerRow] = []
+        for line, cells in self.cells:
+            texts = {f: _cell(cells, c) for f, c in self.columns.items()}
+            if not any(map(_number, (texts[figure] for figure in NEEDED))):
+                continue  # a heading between the rows, or a note below them
+            figures = {f: _number(texts[f]) for f in texts if f != SIZE and texts[f]}
+            for figure in [f for f in self.columns if f != SIZE]:
+                if figure in NEEDED and not texts[figure]:
+                    problem = "holds nothing"
+                elif texts[figure] and figures[figure] is None:
+                    problem = f"holds {texts[figure]!r}"
+                else:
+                    continue
+                head = self.columns[figure].head
+                faults.append(self.fault(line, head, problem, f"a number: the {figure}"))
+            size_id = texts.get(SIZE) or f"{texts['diameter']} {units['diameter']}"
+            numbers = {figure: text for figure, text in figures.items() if text is not None}
+            rows.append(MakerRow(line, " ".join(size_id.split()), numbers))
+        if not rows:
+            faults.append(Fault(self.name, None, "", "there is no size below the head", _EXPECTED))
+        if len(rows) > MOST_SIZES:
+            expected = f"at most {MOST_SIZES}"
+            faults.append(Fault(self.name, None, "", f"there are {len(rows)} sizes", expected))
+        if faults:
+            raise InputError(faults)
+        return tuple(sorted(rows, key=lambda row: float(row.figures["diameter"])))
+
+
+Choose = Callable[[str, Sequence[str], str], int | None]
+"""What asks which of some heads a figure is: its name, the heads, why it is asked."""
+
+
+def read_maker_table(
+    path: Path, named: Mapping[str, str], choose: Choose = lambda *_: None
+) -> MakerTable:
+    """Return the table in a file: its columns guessed from their heads where they are not named.
+
+    Parameters
+    ----------
+    path : Path
+        A CSV file, of commas, semicolons or tabs, or an Excel workbook.
+    named : mapping
+        Heads of columns, or their numbers from 1, by what they are.
+    choose : callable
+        Asked where a column is in doubt; None is no answer.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or a column is not known.
+    """
+    try:
+        file = open_input(path)
+    except (OSError, ValueError) as error:
+        raise InputError.at(path, f"the file cannot be read: {reason(error)}", _EXPECTED) from None
+    with file:
+        if file.read(5) == b"%PDF-":
+            problem = "this is a PDF, in which tables have no columns that a program can trust"
+            raise InputError.at(path, problem, f"{_EXPECTED}: copy the table into one")
+        file.seek(0)
+        rows, _ = cells_of(file, str(path))
+        lines = [*islice(rows, MOST_SIZES + 4 * _MOST_ABOVE)]
+    if not lines:
+        raise InputError.at(path, "the file is empty", _EXPECTED)
+    at = next((k for k, (_, cells) in enumerate(lines[:_MOST_ABOVE]) if _is_head(cells)), 0)
+    (head_line, cells), below = lines[at], lines[at + 1 :]
+    heads = tuple(" ".join(cell.split()) for cell in cells)
+    printed_units = [""] * len(heads)
+    if below and not any(map(_number, below[0][1])):
+        printed_units = [*below[0][1], *printed_units][: len(heads)]
+    columns: dict[str, FoundColumn] = {}
+    faults: list[Fault] = []
+    for figure in sorted(FIGURES, key=lambda f: (f not in named, FIGURES.index(f))):
+        taken = [column.place for column in columns.values()]
+        try:
+            place = _place(figure, heads, printed_units, named, taken, choose)
+        except ValueError as error:
+            faults.append(Fault(str(path), head_line, figure, *error.args))
+            continue
+        if place is not None:
+            unit = _unit(figure, heads[place], printed_units[place])
+            columns[figure] = FoundColumn(place, heads[place], unit)
+    if "diameter" not in columns and SIZE in columns and SIZE not in named and not faults:
+        size = columns.pop(SIZE)  # a table whose sizes are its diameters
+        unit = _unit("diameter", size.head, printed_units[size.place])
+        columns["diameter"] = FoundColumn(size.place, size.head, unit)
+    for figure in NEEDED:
+        if figure not in columns and not any(fault.field == figure for fault in faults):
+            problem = f"no column is known to be it, of {', '.join(filter(None, heads))}"
+            expected = f"--column {figure}=HEAD"
+            faults.append(Fault(str(path), head_line, figure, problem, expected))
+    if faults:
+        raise InputError(faults)
+    diameter = columns["diameter"]
+    if diameter.unit is None:
+        texts = [_cell(cells, diameter) for _, cells in below]
+        columns["diameter"] = replace(diameter, unit=_unit_of_cells(texts))
+    return MakerTable(str(path), head_line, heads, columns, tuple(below))
+
+
+def _is_head(cells: Sequence[str]) -> bool:
+    """Tell whether cells name a breaking load and something else."""
+    known = {figure for cell in cells for figure in FIGURES if _may_be(figure, cell)}
+    return "minimum_breaking_load" in known and len(known) > 1
+
+
+def _may_be(figure: str, head: str) -> bool:
+    if not re.search(_HEADS[figure], head, re.IGNORECASE):
+        return False
+    return figure != "minimum_breaking_load" or not _NO_MINIMUM.search(head)
+
+
+def _place(
+    figure: str,
+    heads: Sequence[str],
+    printed_units: Sequence[str],
+    named: Mapping[str, str],
+    taken: Sequence[int],
+    choose: Choose,
+) -> int | None:
+    """Return which column a figure is, None for none; ValueError where it is in doubt."""
+    if figure in named:
+        return _named_place(heads, named[figure])
+    alike = [k for k, head in enumerate(heads) if k not in taken and _may_be(figure, head)]
+    if figure == SIZE:
+        return alike[0] if alike else None
+    if len({_without_unit(figure, heads[k]) for k in alike}) > 1:
+        listed = [heads[k] for k in alike]
+        answer = choose(figure, listed, "several columns may be it")
+        if answer is None:
+            problem = f"may be {' or '.join(map(repr, listed))}"
+            raise ValueError(problem, f"--column {figure}=HEAD")
+        return alike[answer]
+    if not alike and figure in NEEDED and figure != "diameter":
+        free = [k for k, head in enumerate(heads) if head and k not in taken]
+        answer = choose(figure, [heads[k] for k in free], "no column is known to be it")
+        return None if answer is None else free[answer]
+    with_unit = [k for k in alike if _unit(figure, heads[k], printed_units[k]) is not None]
+    return next(iter(with_unit or alike), None)
+
+
+def _named_place(heads: Sequence[str], text: str) -> int:
+    """Return the place of a column that an option names by its head or number."""
+    same = [k for k, head in enumerate(heads) if head.casefold() == text.strip().casefold()]
+    if len(same) == 1:
+        return same[0]
+    if text.isdecimal() and 1 <= int(text) <= len(heads):
+        return int(text) - 1
+    problem = f"{text!r} is the head of {'several columns' if same else 'no column'}"
+    raise ValueError(problem, f"one of {', '.join(filter(None, heads))}, or its number from 1")
+
+
+def _without_unit(figure: str, head: str) -> str:
+    """Return a head without its unit: alike for one figure in two units."""
+    words = re.sub(r"[\[(].*?[\])]", "", head).replace(",", " ").casefold().split()
+    while words and known_unit(figure, words[-1]) is not None:
+        words.pop()
+    return " ".join(words).strip(" :/.")
+
+
+def _unit(figure: str, head: str, printed: str) -> str | None:
+    """Return the unit that the row of units, or else the head, names; None for none."""
+    if figure == SIZE:
+        return None
+    words = head.replace(",", " ").split()
+    brackets = re.findall(r"[\[(](.*?)[\])]", head)
+    for text in (printed.strip(" []()"), *brackets, " ".join(words[-2:]), *words[-1:]):
+        unit = known_unit(figure, text)
+        if unit is not None:
+            return unit
+    return None
+
+
+def _unit_of_cells(texts: Sequence[str]) -> str | None:
+    """Return the unit of length that all cells with a number carry; None for none."""
+    marks = {re.sub(r"[\d\s./,-]", "", text) for text in texts if _number(text) is not None}
+    return known_unit("diameter", marks.pop()) if len(marks) == 1 else None
+
+
+def known_unit(figure: str, text: str) -> str | None:
+    """Return a unit of a figure as a grade file has it; None for what is none."""
+    unit = " ".join(text.split()).removeprefix("in ") if len(text) > 2 else text
+    unit = _UNITS[figure].get(unit.casefold(), unit)
+    if not unit or len(unit) > 20:
+        return None
+    try:
+        read_quantity(f"1 {unit}", DIMENSIONS[figure])
+    except QuantityError:
+        return None
+    return unit
+
+
+def _cell(cells: Sequence[str], column: FoundColumn) -> str:
+    return cells[column.place].strip() if column.place < len(cells) else ""
+
+
+_FRACTION = re.compile(r"(?:(\d+)[\s-]+)?(\d+)\s*/\s*(\d+)")
+_THOUSANDS = re.compile(r"\d{1,3}(?:[ ,'\u00a0\u202f]\d{3})+(?:\.\d+)?")
+
+
+def _number(text: str) -> str | None:
+    """Return a number of a table with a decimal point and no marks between thousands.
+
+    A part of an inch such as ``1-1/8"`` becomes a decimal fraction. None for what is no number.
+    """
+    bare = text.strip().strip("\"*†'").removesuffix("mm").removesuffix("in").strip(' "')
+    if match := _FRACTION.fullmatch(bare):
+        whole, upper, lower = (int(part or 0) for part in match.groups())
+        return f"{float(whole + Fraction(upper, lower)):.10g}" if lower else None
+    if _THOUSANDS.fullmatch(bare):
+        bare = re.sub(r"[ ,'\u00a0\u202f]", "", bare)
+    return bare if re.fullmatch(r"\d+(?:\.\d*)?|\.\d+", bare) and float(bare) > 0.0 else None
