@@ -1,7 +1,8 @@
-"""Where the shipped files live: in a checkout, or inside the installed wheel."""
+"""Where shipped files live, in a checkout or inside the wheel; which libraries are not there."""
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from pathlib import Path
 
 _PACKAGE = Path(__file__).parent
@@ -21,6 +22,16 @@ def data_folder(name: str) -> Path:
         if candidate.is_dir():
             return candidate
     raise FileNotFoundError(f"the folder {name!r} is missing from this installation")
+
+
+_CALLED = {"plutoprint": "PlutoPrint", "cvxpy": "CVXPY", "clarabel": "Clarabel"}
+"""Libraries that have no wheel for some kinds of machines."""
+
+
+def missing_library(*modules: str) -> str:
+    """Return that one of these libraries is not installed, and why it may be so; empty for none."""
+    missing = [_CALLED[module] for module in modules if find_spec(module) is None]
+    return f"{missing[0]} is not installed; some machines have no wheel of it" if missing else ""
 
 
 def example_file(name: str) -> Path:

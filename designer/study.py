@@ -13,7 +13,7 @@ from designer import checked
 from designer.effects.design import AsBuilt, built_with
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED, KnownEffects
-from designer.errors import Fault, InputError
+from designer.errors import Fault, InputError, MissingLibraryError
 from designer.model.cable import Material
 from designer.model.duty import RUNNING_ROPE, SOURCE, DutyClass
 from designer.model.load_case import EACH, LoadCase
@@ -24,6 +24,7 @@ from designer.model.robot import Poses, Robot
 from designer.model.rope_life import RopeLife
 from designer.model.uncertainty import Uncertainty
 from designer.model.workspace import Workspace
+from designer.resources import missing_library
 
 _LIKELY_DIAMETER_M = 0.01  # Of the cable that stands in where none is given yet
 _FLAT = 1e-6
@@ -364,8 +365,15 @@ def require_answerable(study: Study) -> None:
     ------
     InputError
         With one fault.
+    MissingLibraryError
+        If ropes for groups of cables are asked for and nothing is installed that chooses them.
     """
     require_enough_cables(study)
+    if study.selection is not None and study.selection.groups:
+        missing = missing_library("cvxpy")
+        if missing:
+            place = study.source.fault("selection.groups", missing, "a study without groups")
+            raise MissingLibraryError(str(place))
     if study.pose is None and study.workspace is None:
         fault = study.source.fault("", "nothing to solve", "a pose, a workspace or both")
         raise InputError([fault])

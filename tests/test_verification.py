@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from designer.analysis.verification import verify, verify_cables
+from designer.errors import MissingLibraryError
 from designer.io.config import read_study
 from designer.model.robot import Poses
 from designer.physics import catenary
@@ -18,7 +22,7 @@ from designer.report.templates import environment
 from designer.resources import example_file, example_names
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.inverse import solve_sagging
-from designer.study import Study, as_built_by
+from designer.study import Study, as_built_by, require_answerable
 
 
 def worst_sampled(name: str) -> tuple[Study, Sizing]:
@@ -63,6 +67,44 @@ def test_a_wrong_answer_is_seen() -> None:
     assert '<p class="statement bad">' in text
     assert "by quadrature" in text
     assert "by SLSQP" in text
+
+
+@pytest.mark.parametrize(("module", "called"), [("cvxpy", "CVXPY"), ("clarabel", "Clarabel")])
+def test_where_the_convex_programmes_cannot_be_solved_the_page_names_what_is_missing(
+    monkeypatch: pytest.MonkeyPatch, module: str, called: str
+) -> None:
+    monkeypatch.setitem(sys.modules, module, None)
+    study, sizing = worst_sampled("stadium")  # of more cables than degrees of freedom
+    answers = verify("here", study.material, sizing)
+    assert answers[0].remark.startswith(f"{called} is not installed")
+    assert answers[1].remark == ""
+    shown = environment().from_string(
+        '{% from "report/statements.html.j2" import verification with context %}'
+        "{{ verification(answers) }}"
+    )
+    text = shown.render(answers=answers, paged=False)
+    assert "Other methods agree where they have an answer." in text
+    assert f"Needed diameter, here, by convex programmes (CVXPY): {called} is not" in text
+    assert "good" not in text
+
+
+def test_groups_are_refused_where_nothing_chooses_them(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    text = example_file("fast").read_text(encoding="utf-8")
+    path = tmp_path / "crane.yaml"
+    path.write_text(text.replace("  # groups: {west", "  groups: {west"), encoding="utf-8")
+    study = read_study(path)
+    require_answerable(study)
+    monkeypatch.setitem(sys.modules, "cvxpy", None)
+    with pytest.raises(MissingLibraryError) as error:
+        require_answerable(study)
+    assert re.fullmatch(
+        r".*crane.yaml:\d+: selection.groups: CVXPY is not installed; some machines have no wheel "
+        r"of it \(expected a study without groups\)",
+        str(error.value),
+    )
+    require_answerable(read_study(example_file("fast")))
 
 
 def test_pulleys_are_known_by_the_quadrature_alone() -> None:

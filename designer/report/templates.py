@@ -8,7 +8,6 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib.util import find_spec
 from inspect import isfunction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,7 +16,7 @@ from designer.errors import Fault, InputError, one_line
 from designer.report import format as fmt
 from designer.report import phrases
 from designer.report.diagnosis import words
-from designer.resources import data_folder
+from designer.resources import data_folder, missing_library
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -27,9 +26,8 @@ _KINDS = ("*.j2", "*.css")
 
 def why_no_pdf() -> str:
     """Return why no PDF can be made here; empty where it can."""
-    if find_spec("plutoprint") is not None:
-        return ""
-    return "The PDF is left out: PlutoPrint, which makes it, has no wheel for this kind of machine."
+    missing = missing_library("plutoprint")
+    return f"The PDF is left out: {missing}." if missing else ""
 
 
 def environment(user_folder: Path | None = None) -> Environment:

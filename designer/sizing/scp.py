@@ -29,6 +29,7 @@ from designer.arrays import FloatArray
 from designer.model.cable import Material
 from designer.model.robot import Poses, Robot
 from designer.physics import catenary
+from designer.resources import missing_library
 from designer.statics.distribution import distribute_evenly
 from designer.statics.geometry import CableGeometry, cable_geometry, load_wrench_N, structure_matrix
 
@@ -123,8 +124,12 @@ def size_by_scp(robot: Robot, pose: Poses, material: Material, *, max_turns: int
     Raises
     ------
     ValueError
-        If straight cables cannot hold the pose, or if the robot has pulleys.
+        If straight cables cannot hold the pose, if the robot has pulleys, or if a library that
+        solves the programmes is not installed.
     """
+    missing = missing_library("cvxpy", "clarabel")
+    if missing:
+        raise ValueError(missing)
     if robot.pulley_radius_m != 0.0:
         raise ValueError("the reference has no pulleys")
     problem = _Problem.of(robot, pose, material)
