@@ -177,14 +177,14 @@ POSES: Mapping[str, list[Row]] = {
 
 
 PRICES = "prices.csv"
-"""A price list, in which the thickest wire rope is the cheapest."""
+"""A price list, in which the thickest rope is the cheapest."""
 
 
 def file_text(name: str) -> str:
     """Return what a file beside a study holds."""
     if name == PRICES:
-        sizes = [("3", 9.0), ("5", 7.0), ("8", 5.0)]
-        rows = [[WIRE["id"], size, price, "USD", 2026] for size, price in sizes]
+        sizes = [(WIRE, (3, 5, 8)), (FIBRE, (4, 6, 9))]
+        rows = [[g["id"], d, 12 - d, "USD", 2026] for g, each in sizes for d in each]
         return _csv(["grade", "diameter_mm", "price_per_m", "currency", "date"], rows)
     if name in PATHS:
         rows = [[t, *place] for t, place in zip((0.0, PATH_S), PATHS[name], strict=True)]
