@@ -7,6 +7,7 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "build_helpers"))
 
 import figures  # noqa: E402
+import gallery  # noqa: E402
 import generated  # noqa: E402
 
 from designer import __version__  # noqa: E402
@@ -19,7 +20,9 @@ version = release = __version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "mathml"]
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
-exclude_patterns = ["build_helpers"]
+exclude_patterns = ["build_helpers", "_gallery"]
+generated.GALLERY.mkdir(parents=True, exist_ok=True)  # before Sphinx asks for it
+html_extra_path = ["_gallery"]  # the reports, as they are
 
 default_role = "code"  # numpydoc texts write `names` so
 numpydoc_show_class_members = False
@@ -32,7 +35,7 @@ html_title = f"cdpr-designer {release}"
 html_static_path = ["_static"]
 html_css_files = ["own.css"]
 html_show_sourcelink = False
-html_sidebars = {"tutorial": []}  # the only page of its section
+html_sidebars = {"tutorial": [], "gallery": []}  # the only pages of their sections
 html_theme_options = {
     "navigation_with_keys": False,
     "show_prev_next": True,
@@ -46,4 +49,5 @@ html_math_renderer = "mathml"
 def setup(app):
     """Fill the pages that are made from the code, and draw the figures."""
     app.connect("builder-inited", lambda app: figures.draw_all(HERE / "explanation" / "figures"))
+    app.connect("builder-inited", lambda app: gallery.draw_all(generated.GALLERY))
     app.connect("source-read", generated.fill)

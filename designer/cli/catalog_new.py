@@ -66,7 +66,7 @@ def catalog_new(
     Examples:
       designer catalog new acme.csv
       designer catalog new acme.csv --unit linear_mass=kg/100m --like unirope-6x36-iwrc-1960
-      designer catalog new acme.csv --column minimum_breaking_load="1960 N/mm2 [kN]" \\
+      designer catalog new acme.csv --column minimum_breaking_load="MBL 1960" \\
         --set manufacturer=Acme --set product=Quarry -o my-ropes/acme.yaml
 
     Exit status 0: the file is whole. 1: it is written, and comments in it say what is missing. 2:

@@ -5,6 +5,7 @@ import re
 from collections import Counter
 from pathlib import Path
 
+import gallery
 from sphinx.util.logging import getLogger
 from typer.main import get_command
 
@@ -19,6 +20,7 @@ from designer.resources import data_folder
 _MARK = re.compile(r"^<!-- generated: (\w+) -->$", re.MULTILINE)
 _LOGGER = getLogger(__name__)
 _NOWHERE = {"type": "null"}
+GALLERY = Path(__file__).parents[1] / "_gallery" / "reports"
 PAIRS = Path(__file__).parents[2] / "tests" / "pairs" / "outcomes.csv"
 PAIRS_HEAD = ("option", "computed with", "refused with", "reported as not covered with")
 
@@ -216,6 +218,7 @@ def verification():
 
 WRITERS = {
     "verification": verification,
+    "gallery": lambda: gallery.page(GALLERY),
     "pairs": pairs,
     "config": config,
     "effects": effects,
