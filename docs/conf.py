@@ -50,4 +50,5 @@ def setup(app):
     """Fill the pages that are made from the code, and draw the figures."""
     app.connect("builder-inited", lambda app: figures.draw_all(HERE / "explanation" / "figures"))
     app.connect("builder-inited", lambda app: gallery.draw_all(generated.GALLERY))
+    app.connect("env-get-outdated", lambda *_: ["gallery"])  # though its own text is as it was
     app.connect("source-read", generated.fill)
