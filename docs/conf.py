@@ -49,6 +49,7 @@ html_math_renderer = "mathml"
 def setup(app):
     """Fill the pages that are made from the code, and draw the figures."""
     app.connect("builder-inited", lambda app: figures.draw_all(HERE / "explanation" / "figures"))
-    app.connect("builder-inited", lambda app: gallery.draw_all(generated.GALLERY))
+    app.add_config_value("gallery", gallery.names(), "env")  # as -D gallery=yard,stadium
+    app.connect("builder-inited", lambda app: gallery.draw(generated.GALLERY, app.config.gallery))
     app.connect("env-get-outdated", lambda *_: ["gallery"])  # though its own text is as it was
     app.connect("source-read", generated.fill)

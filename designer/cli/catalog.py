@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from designer.cli.catalog_new import catalog_new
-from designer.cli.options import WRONG_INPUT, AsJson, NoPlugins, argument, quantity_of
+from designer.cli.options import (
+    WRONG_INPUT,
+    AsJson,
+    HelpedCommands,
+    NoPlugins,
+    argument,
+    quantity_of,
+)
 from designer.errors import InputError, OutputError
 from designer.io.output import output_folder
 from designer.resources import data_folder
@@ -25,7 +32,9 @@ if TYPE_CHECKING:
 
 
 _LONGEST_NAME = 60
-catalog = typer.Typer(help="Look at the rope grades that are known.", no_args_is_help=True)
+catalog = typer.Typer(
+    cls=HelpedCommands, help="Look at the rope grades that are known.", no_args_is_help=True
+)
 
 
 @catalog.command("list")

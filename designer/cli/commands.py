@@ -9,14 +9,11 @@ import atexit
 import gc
 import shlex
 import sys
-from copy import copy
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.markup import escape
-from typer.core import TyperGroup
 
 from designer import __version__
 from designer.cli.catalog import catalog
@@ -29,6 +26,7 @@ from designer.cli.options import (
     NEGATIVE_ANSWER,
     WRONG_INPUT,
     Config,
+    HelpedCommands,
     NoPlugins,
     Template,
     argument,
@@ -55,15 +53,8 @@ if TYPE_CHECKING:
     from designer.diagnosis.result import Diagnosis
 
 
-class Commands(TyperGroup):
+class Commands(HelpedCommands):
     """All commands; typer itself would give a closed pipe the status of a negative answer."""
-
-    def get_command(self, ctx: Any, name: str) -> Any:
-        """Return a command; what its help has in brackets is no markup, but meant as it stands."""
-        command = copy(super().get_command(ctx, name))
-        if command is not None and command.help:
-            command.help = escape(command.help)
-        return command
 
     def make_context(self, *arguments: Any, **named: Any) -> Any:
         """Read the arguments; those that ask for help are answered here."""
@@ -262,9 +253,11 @@ def diagnose(
     expect, into CONFIG-plan; with -o FILE.csv the table alone. What is unknown, what will be read
     and its noise stand under `measurements:`, whose file need not be there, or in options.
 
-    Example:  designer diagnose built-crane.yaml
-    A month later:  designer diagnose --check built-crane.diagnosed.yaml --data new.csv
-    Before:  designer diagnose --plan crane.yaml --unknown anchors --length-noise "1 mm"
+    \b
+    Examples:
+      designer diagnose built-crane.yaml
+      A month later:  designer diagnose --check built-crane.diagnosed.yaml --data new.csv
+      Before:  designer diagnose --plan crane.yaml --unknown anchors --length-noise "1 mm"
 
     Exit status 0: the model, with what was found, agrees with the data, or the plan tells all that
     is unknown. 1: something is left or not plausible, declared effects do not help, or the plan

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.markup import escape
+from typer.core import TyperGroup
 
 from designer.errors import InputError
 from designer.units import Dimension, QuantityError, read_quantity
@@ -21,6 +24,21 @@ NEGATIVE_ANSWER = 1
 WRONG_INPUT = 2
 INTERRUPTED = 130
 """As the shell gives it after Ctrl-C."""
+
+
+class HelpedCommands(TyperGroup):
+    """Commands whose help is as wide as the terminal, and has no markup."""
+
+    def get_command(self, ctx: Any, name: str) -> Any:
+        """Return a command; rich would keep the line breaks of its docstring."""
+        command = copy(super().get_command(ctx, name))
+        if command is not None and command.help:
+            paragraphs = escape(command.help).split("\n\n")
+            joined = (
+                part if part.startswith("\b") else part.replace("\n", " ") for part in paragraphs
+            )
+            command.help = "\n\n".join(joined)
+        return command
 
 
 def path_of(text: str) -> Path:

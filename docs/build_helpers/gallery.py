@@ -20,10 +20,10 @@ _LOGGER = getLogger(__name__)
 _STAMP = f"{designer.__version__}, {SAMPLES} samples\n"
 
 
-def draw_all(folder):
-    """Make the report, the picture and the words of each study that this version has not made."""
+def draw(folder, names):
+    """Make the report, the picture and the words of these studies if this version has not yet."""
     catalogue = designer.catalogue(with_plugins=False)
-    for name in names():
+    for name in names:
         stamp = folder / name / "stamp"
         if not stamp.is_file() or stamp.read_text() != _STAMP:
             _LOGGER.info("report of %s, for the gallery", name)
@@ -64,7 +64,8 @@ def _words(analysis):
 
 def page(folder):
     """Return the gallery: for each study its picture, what was chosen, and its report."""
-    return "\n".join(_entry(name, folder / name) for name in names())
+    made = (name for name in names() if (folder / name / "stamp").is_file())
+    return "\n".join(_entry(name, folder / name) for name in made)
 
 
 def _entry(name, folder):

@@ -198,6 +198,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("selection.safety_factor", "4", "4"),
         Entry("selection.duty_class", "default", "none"),
         Entry("selection.objectives", "default", "[mass, drum_diameter, max_tension]"),
+        Entry("selection.prices", "default", "none"),
         Entry("selection.termination_efficiency", "default", "1"),
         Entry("selection.sheave_diameter", "default", "none"),
         Entry("selection.groups", "default", "none"),
@@ -276,8 +277,8 @@ def _with_options(text: str) -> str:
 
 def test_the_options_in_the_starter_config_are_true(study_of: StudyOf) -> None:
     text = _with_options(example_file("fast").read_text(encoding="utf-8"))
-    choices = re.compile(r"(?m)^ *(planar|poses|path|rope_life|orientation\w*):.*\n")
-    assert len(choices.findall(text)) == 10
+    choices = re.compile(r"(?m)^ *(planar|poses|path|prices|rope_life|orientation\w*):.*\n")
+    assert len(choices.findall(text)) == 11
     text = choices.sub("", text)
     with pytest.raises(InputError, match="uncertainty or groups, not both"):
         study_of(text)
