@@ -313,9 +313,15 @@ def test_a_narrow_terminal_cuts_no_id(capsys, monkeypatch) -> None:
     [
         (("explore",), "pip install 'cdpr-designer[desktop]'"),
         (("sweep",), "keep: [selection.chosen.utilisation, selection.chosen.total_mass_kg]"),
+        (
+            ("catalog", "new"),
+            "units from heads or a row of units below; on a terminal you are asked",
+        ),
     ],
 )
-def test_brackets_in_a_help_text_are_shown(designer, monkeypatch, command, words) -> None:
+def test_help_is_as_wide_as_the_terminal_and_has_no_markup(
+    designer, monkeypatch, command, words
+) -> None:
     monkeypatch.setenv("COLUMNS", "120")
     assert words in designer(*command, "--help").out
 

@@ -111,6 +111,7 @@ def test_no_wrench_of_a_box_asks_sagging_cables_for_more(
     assert pulled.utilisation > tool.utilisation
 
 
+@pytest.mark.slow
 def test_worst_wrench_is_in_words_and_files(analysis: designer.Analysis) -> None:
     pulled, tool = analysis.to_dict()["load_cases"]
     assert pulled["wrench_N"][2] == -900.0
