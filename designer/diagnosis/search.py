@@ -198,7 +198,7 @@ class Searcher:
                 break
             effects = extended[fewest]
             present = self.fit(effects, best[fewest].fit)
-        effects = self._predicting(effects, present)
+        effects = self._predicting(self._settled(effects, present, steps), present)
         return tuple(steps), self.fit(effects, present, thorough=True), tuple(effects)
 
     def _extended(
@@ -427,6 +427,26 @@ class Searcher:
                 model = self.fit(swapped, present)
                 better = (self._penalised(present) - self._penalised(model)) / model.variance
                 if better > RIVAL_MARGIN:
+                    effects, present = swapped, model
+        return effects
+
+    def _settled(self, effects: list[Effect], present: Fit, steps: Sequence[Step]) -> list[Effect]:
+        """Replace a member by what was as good when it was added, and is better beside them all."""
+        for step in steps:
+            variance, added = _best_variance(step.trials), step.added
+            chosen = next((t for t in step.trials if t.effect == added), None)
+            if chosen is None or len(effects) == 1 or self.progress.is_over:
+                continue
+            least = chosen.score(variance) - RIVAL_MARGIN * chosen.fit.inflation[chosen.effect.key]
+            for trial in step.trials:
+                is_first = chosen.effect.cause == "setting_up" != trial.effect.cause
+                if added not in effects or trial.effect not in self._others(effects) or is_first:
+                    continue
+                if not trial.may_be_added or trial.score(variance) < least:
+                    continue
+                swapped = [trial.effect if e == added else e for e in effects]
+                model = self.fit(swapped, present)
+                if self._penalised(model) < self._penalised(present):
                     effects, present = swapped, model
         return effects
 

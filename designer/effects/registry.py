@@ -94,6 +94,7 @@ _IN_ORDER = (
     "pulley_friction",
     "tension_hysteresis",
     "tension_gain",
+    "tension_scale",
     "tension_bias",
 )
 """Files of this folder, each with its ``EFFECT``."""

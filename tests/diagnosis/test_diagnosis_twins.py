@@ -80,6 +80,7 @@ def twins(tmp_path_factory: pytest.TempPathFactory) -> Twins:
         (YARD3, "wind_drag"),
         (YARD3, "base_tilt"),
         (YARD3, "tension_gain"),
+        (YARD3, "tension_scale"),
         (HALL6, "centre_of_mass_offset"),
         (HALL6, "tension_bias"),
         (YARD3, "mast_compliance"),

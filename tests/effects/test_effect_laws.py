@@ -103,6 +103,7 @@ def test_drum_layering_integrates_what_a_turn_pays_out(machine, measured):
     [
         ("drum_scale", {"scale": 1.01}, LENGTH_M * 1.01, TENSION_N),
         ("length_offset", {"offset_2_m": 0.3}, LENGTH_M + np.array([0.0, 0.3, 0.0]), TENSION_N),
+        ("tension_scale", {"gain": 1.1}, LENGTH_M, 1.1 * TENSION_N),
         ("tension_bias", {"offset_3_N": -5.0}, LENGTH_M, TENSION_N + np.array([0.0, 0.0, -5.0])),
         ("tension_length", {"compliance_m_per_N": 1e-4}, LENGTH_M + 1e-4 * TENSION_N, TENSION_N),
     ],
@@ -231,6 +232,7 @@ def test_sizes_follow_the_machine(machine):
         ("clock_offset", "offset_s", (-4.0, 4.0), (-8.0, 8.0)),
         ("pulley_friction", "coefficient", (0.01, 0.25), (0.45,)),
         ("tension_gain", "gain", (0.8, 1.3), (0.5, 2.0)),
+        ("tension_scale", "gain", (0.8, 1.3), (0.5, 2.0)),
         # Aramid shrinks as it warms, polyamide grows by a tenth of a permille a degree.
         ("thermal_expansion", "coefficient_per_K", (-6e-6, 1.2e-5, 1e-4), (-8e-5, 3e-4)),
     ],

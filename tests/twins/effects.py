@@ -394,6 +394,10 @@ def _tension_gain(readings: Readings, scene: Scene, p: Parameters) -> Readings:
     return replace(readings, tension_N=tension)
 
 
+def _tension_scale(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    return replace(readings, tension_N=readings.tension_N * p["gain"])
+
+
 def _tension_bias(readings: Readings, scene: Scene, p: Parameters) -> Readings:
     return replace(readings, tension_N=readings.tension_N + _per_cable(p, "N"))
 
@@ -420,6 +424,7 @@ READING: dict[str, Callable[[Readings, Scene, Parameters], Readings]] = {
     "pulley_friction": _pulley_friction,
     "tension_hysteresis": _tension_hysteresis,
     "tension_gain": _tension_gain,
+    "tension_scale": _tension_scale,
     "tension_bias": _tension_bias,
 }
 
