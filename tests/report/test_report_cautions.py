@@ -14,6 +14,7 @@ from test_report_groups import YARD
 
 from designer.analysis.analyse import Analysis
 from designer.grades.grade import Limits
+from designer.model.machine import Surroundings
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import design_report, section
 from designer.report.figures.charts_selection import pareto_chart
@@ -86,11 +87,18 @@ def test_limits_of_the_grade_are_cautions(
     page = page_of(altered(fibre, selection=selection))
     found = {s.title: s for s in page.confidence}
     assert titles == {t for t in found if t.startswith("Creep") or t == "Temperature"}
-    assert all(found[title].tone == "doubt" for title in titles)
+    assert all(found[title].tone == "doubt" for title in titles if title != "Temperature")
     said = "Known of it: high." if limits and limits.creep else "says nothing of it"
     assert said in found["Creep of yale-ultrex-hmpe"].text
     if "Temperature" in titles:
         assert "from −40 to 70\u00a0°C" in found["Temperature"].text
+        assert "the study has 20\u00a0°C" in found["Temperature"].text
+        assert found["Temperature"].tone == ""
+        hot = dataclasses.replace(fibre.study, surroundings=Surroundings(75.0))
+        page = page_of(altered(fibre, selection=selection, study=hot))
+        (outside,) = (s for s in page.confidence if s.title == "Temperature")
+        assert outside.tone == "bad"
+        assert "75\u00a0°C" in outside.text and "which is outside" in outside.text
 
 
 @pytest.fixture(scope="module")
