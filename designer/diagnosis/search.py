@@ -198,7 +198,7 @@ class Searcher:
                 break
             effects = extended[fewest]
             present = self.fit(effects, best[fewest].fit)
-        effects = self._predicting(self._settled(effects, present, steps), present)
+        effects = self._predicting(self._reconsidered(effects, present, steps), present)
         return tuple(steps), self.fit(effects, present, thorough=True), tuple(effects)
 
     def _extended(
@@ -421,33 +421,37 @@ class Searcher:
         present = self.fit(effects, start)
         for k in range(len(effects) - 1):  # the newest was chosen among all
             for outsider in outsiders:
-                if outsider not in self._others(effects) or self.progress.is_over:
-                    continue
-                swapped = [*effects[:k], outsider, *effects[k + 1 :]]
-                model = self.fit(swapped, present)
-                better = (self._penalised(present) - self._penalised(model)) / model.variance
-                if better > RIVAL_MARGIN:
-                    effects, present = swapped, model
+                effects, present = self._swapped(effects, present, k, outsider, RIVAL_MARGIN)
         return effects
 
-    def _settled(self, effects: list[Effect], present: Fit, steps: Sequence[Step]) -> list[Effect]:
+    def _swapped(
+        self, effects: list[Effect], present: Fit, k: int, outsider: Effect, margin: float
+    ) -> tuple[list[Effect], Fit]:
+        """Return effects and their fit with an outsider as member k, if better by a margin."""
+        if outsider not in self._others(effects) or self.progress.is_over:
+            return effects, present
+        swapped = [*effects[:k], outsider, *effects[k + 1 :]]
+        model = self.fit(swapped, present)
+        better = (self._penalised(present) - self._penalised(model)) / model.variance
+        return (swapped, model) if better > margin else (effects, present)
+
+    def _reconsidered(
+        self, effects: list[Effect], present: Fit, steps: Sequence[Step]
+    ) -> list[Effect]:
         """Replace a member by what was as good when it was added, and is better beside them all."""
         for step in steps:
-            variance, added = _best_variance(step.trials), step.added
-            chosen = next((t for t in step.trials if t.effect == added), None)
-            if chosen is None or len(effects) == 1 or self.progress.is_over:
+            added = next((t for t in step.trials if t.effect == step.added), None)
+            if added is None or len(effects) == 1:
                 continue
-            least = chosen.score(variance) - RIVAL_MARGIN * chosen.fit.inflation[chosen.effect.key]
+            variance = _best_variance(step.trials)
+            least = added.score(variance) - RIVAL_MARGIN * added.fit.inflation[added.effect.key]
             for trial in step.trials:
-                is_first = chosen.effect.cause == "setting_up" != trial.effect.cause
-                if added not in effects or trial.effect not in self._others(effects) or is_first:
-                    continue
-                if not trial.may_be_added or trial.score(variance) < least:
-                    continue
-                swapped = [trial.effect if e == added else e for e in effects]
-                model = self.fit(swapped, present)
-                if self._penalised(model) < self._penalised(present):
-                    effects, present = swapped, model
+                # An error of setting up is thought of before physics.
+                is_later = added.effect.cause == "setting_up" and trial.effect.cause == "physics"
+                is_as_good = trial.may_be_added and trial.score(variance) >= least
+                if added.effect in effects and is_as_good and not is_later:
+                    k = effects.index(added.effect)
+                    effects, present = self._swapped(effects, present, k, trial.effect, 0.0)
         return effects
 
     def _pruned(self, effects: list[Effect]) -> list[Effect]:
