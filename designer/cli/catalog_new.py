@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from designer.io.grade_draft import GradeDraft, OffTheLaw
     from designer.io.maker_table import MakerTable
 
-_PAIRS = "Several times, once for each."
+_REPEATED = "Several times, once for each."
 
 
 def catalog_new(
@@ -29,16 +29,18 @@ def catalog_new(
     column: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="FIGURE=HEAD", help=f"Which column is what, by head or number. {_PAIRS}"
+            metavar="FIGURE=HEAD", help=f"Which column is what, by head or number. {_REPEATED}"
         ),
     ] = None,
     unit: Annotated[
         list[str] | None,
-        typer.Option(metavar="FIGURE=UNIT", help=f"Unit, where the heads have none. {_PAIRS}"),
+        typer.Option(metavar="FIGURE=UNIT", help=f"Unit, where the heads have none. {_REPEATED}"),
     ] = None,
     field: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="FIELD=TEXT", help=f"What the table does not say. {_PAIRS}"),
+        typer.Option(
+            "--set", metavar="FIELD=TEXT", help=f"What the table does not say. {_REPEATED}"
+        ),
     ] = None,
     like: Annotated[
         str | None,
@@ -79,12 +81,12 @@ def catalog_new(
     columns, units = _pairs("--column", column, FIGURES), _pairs("--unit", unit, FIGURES[1:])
     texts = _pairs("--set", field, TEXTS)
     lender = None if like is None else _grade(like, no_plugins)
-    found = read_maker_table(table, columns, _choose if _asks() else lambda *_: None)
-    units = _units(found, units)
-    rows = found.rows(units)
-    _print_table(found, units, len(rows))
+    maker_table = read_maker_table(table, columns, _choose if _asks() else lambda *_: None)
+    units = _units(maker_table, units)
+    rows = maker_table.rows(units)
+    _print_table(maker_table, units, len(rows))
     texts = _usual(table, lender) | texts
-    draft = GradeDraft(found, rows, units, texts, lender, doubt)
+    draft = GradeDraft(maker_table, rows, units, texts, lender, doubt)
     if _asks():
         draft = _asked(draft, no_plugins)
     draft = _with_doubt(draft)

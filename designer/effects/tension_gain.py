@@ -11,6 +11,7 @@ from designer.model.measured_data import Measured
 from designer.units import NUMBER
 
 _SIZE = Size(0.02, bounds=(0.02, 50.0), plausible=(0.7, 1.4))
+GAIN = Parameter("gain", NUMBER, _SIZE, neutral=1.0, above=0.0)
 
 
 def _change(readings: Readings, values: Values, measured: Measured, *, cable: int) -> Readings:
@@ -24,7 +25,7 @@ EFFECT = Effect(
     summary="the load cell of cable {cable} has a wrong gain",
     law="measured tension is gain times the force",
     source="definition",
-    parameters=(Parameter("gain", NUMBER, _SIZE, neutral=1.0, above=0.0),),
+    parameters=(GAIN,),
     on_readings=_change,
     needs=frozenset({"tension"}),
     takes_cable=True,

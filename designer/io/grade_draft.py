@@ -151,8 +151,7 @@ class GradeDraft:
         for row in self.rows:
             doubt = f", doubt: {scalar(self.doubt)}" if row.line in off else ""
             figures = ", ".join(f"{figure}: {row.figures[figure]}" for figure in row.figures)
-            size_id = "'" + row.id.replace("'", "''") + "'"
-            lines.append(f"  - {{id: {size_id}, {figures}{doubt}}}")
+            lines.append(f"  - {{id: {_quoted(row.id)}, {figures}{doubt}}}")
         return "\n".join([*lines, ""])
 
     def _field_lines(self, names: Sequence[str], indent: str = "") -> list[str]:

@@ -249,10 +249,8 @@ def _price_attributes(study: Study, base: Base, keep: Sequence[str]) -> dict[str
     if selection is None or not names:
         return {}
     grades = base.catalogue(study).grades
-    currency, (_, estimate) = (
-        common_currency(offered(grades, selection)),
-        with_prices(grades, selection),
-    )
+    currency = common_currency(offered(grades, selection))
+    _, estimate = with_prices(grades, selection)
     attributes = {} if currency is None else {"units": currency}
     if estimate is not None:
         share = f"may be {estimate.low:g} to {estimate.high:g} times as much"

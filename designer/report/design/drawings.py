@@ -102,8 +102,8 @@ class Drawings:
     @cached_property
     def mode_shapes(self) -> tuple[Drawing, ...]:
         """How the platform moves in each of its modes; empty where figures are not drawn."""
-        found = self.analysis.modes if self.draws else None
-        return () if found is None else tuple(map(Drawing, mode_shapes(found)))
+        modes = self.analysis.modes if self.draws else None
+        return () if modes is None else tuple(map(Drawing, mode_shapes(modes)))
 
     @chart
     def clearance(self) -> str | None:

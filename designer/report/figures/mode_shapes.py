@@ -29,17 +29,17 @@ _SINE = ".37 0 .63 1"
 """Control points of a cubic curve that is near half a period of a cosine."""
 
 
-def mode_shapes(found: PlatformModes) -> tuple[str, ...]:
+def mode_shapes(modes: PlatformModes) -> tuple[str, ...]:
     """Return each mode as SVG: at rest, and at its end, which moves to the other end and back.
 
     Displacements are those of small motions, drawn far larger; that of a point is linear in its
     lever, u + θ × r, and that of a cable falls off linearly toward its exit point.
     """
-    statics = found.statics
+    statics = modes.statics
     lines, shares = _lines(statics)
     robot = statics.robot
     view = (_IN_PLANE if robot.is_planar else _FROM_ASIDE) @ robot.level
-    moves = [_MOVES * _reach_m(robot) * _displacements(mode, lines, shares) for mode in found.modes]
+    moves = [_MOVES * _reach_m(robot) * _displacements(mode, lines, shares) for mode in modes.modes]
     every = np.concatenate([lines + sign * move for move in moves for sign in (1.0, -1.0)]) @ view.T
     low, high = every.min(axis=(0, 1)), every.max(axis=(0, 1))
     sheet = np.array([_WIDTH, _HEIGHT])
@@ -52,7 +52,7 @@ def mode_shapes(found: PlatformModes) -> tuple[str, ...]:
 
     return tuple(
         _svg(number, mode, *(on_sheet(lines + sign * move) for sign in (0.0, 1.0, -1.0)))
-        for number, (mode, move) in enumerate(zip(found.modes, moves, strict=True), start=1)
+        for number, (mode, move) in enumerate(zip(modes.modes, moves, strict=True), start=1)
     )
 
 
