@@ -25,6 +25,16 @@ from designer.arrays import FloatArray
 from designer.physics import catenary, tangent
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+_TO_SERIES = (np.polynomial.legendre.legvander(_NODES, 15) * _WEIGHTS[:, None]).T * (
+    np.arange(16.0)[:, None] + 0.5
+)
+_UP_TO_NODE = (
+    0.5
+    * np.polynomial.legendre.legval(_NODES, np.polynomial.legendre.legint(_TO_SERIES, lbnd=-1.0)).T
+)
+"""From values at the nodes to integrals (node, value), on an interval of unit length."""
+_SHORT_ARC = 0.5
+"""Difference of asinh(V/F_x) below which 16 nodes integrate to rounding; see `tangent`."""
 _FOLDED_M_PER_N = 1e150
 """In place of an infinite flexibility."""
 _VERTICAL = 1e-12
@@ -56,22 +66,51 @@ def consistent_mass_kg(
     across : array (...)
         Of those across its plane: of a vertical cable as along x.
     """
-    length, F_x, F_z, EA, w = np.broadcast_arrays(
-        length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m
+    cable = np.broadcast_arrays(length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m)
+    a, b, c, x = (
+        values.reshape(16, *cable[0].shape)
+        for values in _along(*(value.ravel() for value in cable))
     )
-    share = (0.5 * (1.0 + _NODES)).reshape(-1, *[1] * length.ndim)
-    s = share * length
-    V = F_z - w * (length - s)
-    end = np.linalg.inv(_regular(tangent.flexibility_m_per_N(length, F_x, F_z, EA, w)))
-    shape = _regular(tangent.flexibility_m_per_N(s, F_x, V, EA, w)) @ end
-    mass = linear_density_kg_per_m * length
-    weights = 0.5 * _WEIGHTS
-    plane = np.einsum("k,k...ji,k...jl->...il", weights, shape, shape) * mass[..., None, None]
-    x, _ = catenary.position_m(s, length, F_x, F_z, EA, w)
-    X, _ = catenary.end_position_m(length, F_x, F_z, EA, w)
+    half = 0.5 * _WEIGHTS
+    skew = np.tensordot(half, a * b + b * c, 1)
+    rows = [
+        [np.tensordot(half, a * a + b * b, 1), skew],
+        [skew, np.tensordot(half, b * b + c * c, 1)],
+    ]
+    end = np.linalg.inv(_regular(tangent.flexibility_m_per_N(*cable)))
+    mass = np.asarray(linear_density_kg_per_m * cable[0])
+    plane = end @ np.moveaxis(np.array(rows), (0, 1), (-2, -1)) @ end * mass[..., None, None]
+    X, _ = catenary.end_position_m(*cable)
     with np.errstate(invalid="ignore", divide="ignore"):
-        swing = mass * np.einsum("k,k...->...", weights, (x / X) ** 2)
-    return plane, np.where(_VERTICAL * length >= X, plane[..., 0, 0], swing)
+        swing = mass * np.tensordot(half, x * x, 1) / X**2
+    return plane, np.where(_VERTICAL * cable[0] >= X, plane[..., 0, 0], swing)
+
+
+def _along(
+    length: FloatArray, F_x: FloatArray, F_z: FloatArray, EA: FloatArray, w: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return C_xx, C_xz, C_zz [m/N] and x [m] at the nodes of cables (16, n).
+
+    On short arcs all are integrals of smooth functions from the exit point on, which the values at
+    the nodes give at once; on longer ones each is a closed form.
+    """
+    share = 0.5 * (1.0 + _NODES)[:, None]
+    stretch = share * length / EA
+    V = F_z - w * length * (1.0 - share)
+    T, V_0 = np.hypot(F_x, V), F_z - w * length
+    angle, _ = catenary.arc_angle(F_x, V_0, F_z, np.hypot(F_x, V_0), np.hypot(F_x, F_z), w * length)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        a = stretch + length * (_UP_TO_NODE @ (V**2 / T**3))
+        b = -length * (_UP_TO_NODE @ (F_x * V / T**3))
+        c = stretch + length * (_UP_TO_NODE @ (F_x**2 / T**3))
+        x = F_x * stretch + length * (_UP_TO_NODE @ (F_x / T))
+    far = np.flatnonzero(~(angle < _SHORT_ARC))
+    if len(far):
+        reach, F_x, EA, w = share * length[far], F_x[far], EA[far], w[far]
+        C = _regular(tangent.flexibility_m_per_N(reach, F_x, V[:, far], EA, w))
+        a[:, far], b[:, far], c[:, far] = C[..., 0, 0], C[..., 0, 1], C[..., 1, 1]
+        x[:, far], _ = catenary.position_m(reach, length[far], F_x, F_z[far], EA, w)
+    return a, b, c, x
 
 
 def _regular(flexibility: FloatArray) -> FloatArray:
