@@ -28,6 +28,8 @@ from designer.workspace.refine import (
     worst_over_samples,
 )
 
+_TOGETHER = 32
+"""Cables whose hard poses are solved in one batch: memory stays flat."""
 _CELLS_A_SIDE, _TURNS = 6, 8
 _CELLS = _CELLS_A_SIDE**3 * _TURNS
 """Parts of the space, by position and orientation; a search starts from the worst place of each."""
@@ -260,17 +262,24 @@ def _meet(
         tried = Cables([cables[k] for k in open_rows.tolist()], np.arange(len(open_rows)))
         probed = solve_sagging(robot, poses.part(lost[open_rows]), tried, seeks_better=False)
         open_rows = open_rows[probed.is_solved]
-    for row in open_rows.tolist():
-        hard = np.flatnonzero(meets.failed[row])
-        # After the first 16 and after each 256, a look whether the cable has failed.
-        edges = [0, 16, *range(256, len(hard) + 256, 256)]
-        for batch in (hard[a:b] for a, b in pairwise(edges) if a < len(hard)):
-            add_slowly(meets, row, robot, poses, cables[row], cells, exclude, batch)
-            fails = batch[meets.failed[row, batch]]
-            if len(fails):
-                lost[row] = fails[0]
-                if gives_up:
-                    break
+    for first in range(0, len(open_rows), _TOGETHER):
+        hard = {
+            row: np.flatnonzero(meets.failed[row]) for row in open_rows[first : first + _TOGETHER]
+        }
+        # After the first 16 and after each 256, a look which cables have failed.
+        for start, end in pairwise([0, 16, *range(256, len(positions) + 256, 256)]):
+            batches = {row: at[start:end] for row, at in hard.items() if len(at) > start}
+            if not batches:
+                break
+            rows = np.repeat(list(batches), [len(batch) for batch in batches.values()])
+            at = np.concatenate(list(batches.values()))
+            add_slowly(meets, robot, poses, cables, rows, at, cells, exclude)
+            for row, batch in batches.items():
+                fails = batch[meets.failed[row, batch]]
+                if len(fails):
+                    lost[row] = fails[0]
+                    if gives_up:
+                        del hard[row]
     return meets, lost
 
 

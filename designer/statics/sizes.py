@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from designer.arrays import BoolArray, IntArray, require_shape
+from designer.arrays import BoolArray, FloatArray, IntArray, require_shape
 from designer.kernel.calling import CableFigures, Meets, plain, share_out
-from designer.model.cable import Cable
+from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.progress import checkpoint
 from designer.statics.geometry import upright_exit_points_m, upright_situation
@@ -70,8 +70,10 @@ def meet(
         failed=np.zeros((len(cables), len(poses.position_m)), dtype=np.bool_),
     )
     if not is_quick(robot):
-        for row, cable in enumerate(cables):
-            add_slowly(meets, row, robot, poses, cable, cells, leaves_out_hanging)
+        every = np.arange(len(poses.position_m))
+        for row in range(len(cables)):
+            of_row = np.full(len(every), row)
+            add_slowly(meets, robot, poses, cables, of_row, every, cells, leaves_out_hanging)
         return meets
     weight = np.array([cable.weight_N_per_m * np.ones(robot.n_cables) for cable in cables])
     stiffness = np.array([[cable.axial_stiffness_N] for cable in cables])
@@ -98,65 +100,67 @@ def meet(
 
 def add_slowly(
     meets: Meets,
-    row: int,
     robot: Robot,
     poses: Poses,
-    cable: Cable,
+    cables: Sequence[Cable],
+    rows: IntArray,
+    at: IntArray,
     cells: IntArray,
     leaves_out_hanging: bool,
-    indices: IntArray | None = None,
 ) -> None:
-    """Solve poses one cable at a time, the hard ones with more patience, and add what they meet.
+    """Solve pairs of a cable and a pose, the hard ones with more patience, and add what they meet.
 
     Other branches, which take a hundred times as long, are tried only where the first does not
     serve: where it is overloaded, or exceeds the largest sag, or hangs.
 
     Parameters
     ----------
-    meets, row
-        What is added to, and the cable's place in it.
-    indices : array, optional
-        The poses to solve; all if left out.
+    meets
+        What is added to; the other parameters as for `meet`.
+    rows, at : array (n_pairs,)
+        Which of the cables, and of the poses; of one cable only where cables are redundant.
     """
-    at = np.arange(len(poses.position_m)) if indices is None else indices
+    cable: Cable | Cables
+    cable = cables[rows[0]] if (rows == rows[0]).all() else Cables(cables, rows)
     part = poses.part(at)
     statics = solve_sagging(robot, part, cable, seeks_better=False)
     is_solved, tension_N = statics.is_solved, statics.largest_tension_N
     hangs, length_m = statics.hangs_below, statics.length_m
-    again = np.flatnonzero(_may_serve_better(statics, cable, leaves_out_hanging))
+    allowable_N = np.array([each.allowable_tension_N for each in cables])[rows]
+    again = np.flatnonzero(_may_serve_better(statics, cable, allowable_N, leaves_out_hanging))
     if len(again):
-        better = solve_sagging(robot, part.part(again), cable)
+        other = cable if isinstance(cable, Cable) else Cables(cables, rows[again])
+        better = solve_sagging(robot, part.part(again), other)
         is_solved[again], tension_N[again] = better.is_solved, better.largest_tension_N
         hangs[again], length_m[again] = better.hangs_below, better.length_m
-    meets.failed[row, at] = ~is_solved
+    meets.failed[rows, at] = ~is_solved
     left_out = hangs & is_solved & leaves_out_hanging
     counts = is_solved & ~left_out
-    used = tension_N[counts] / cable.allowable_tension_N
-    meets.left_out[row] += int(left_out.sum())
-    meets.counted[row] += len(used)
-    meets.overloaded[row] += int((used > 1.0).sum())
-    meets.longest_m[row] = np.maximum(
-        meets.longest_m[row], length_m[counts].max(axis=0, initial=0.0)
-    )
-    # In ascending order the last of each cell, which is its largest, is what stays.
-    order = np.argsort(used, kind="stable")
-    best = np.full(meets.utilisation.shape[1], -np.inf)
-    where = np.zeros(len(best), dtype=np.int64)
-    best[cells[at][counts][order]] = used[order]
-    where[cells[at][counts][order]] = at[counts][order]
-    higher = best > meets.utilisation[row]
-    meets.utilisation[row, higher] = best[higher]
-    meets.pose[row, higher] = where[higher]
+    used, row, of_pose = (tension_N / allowable_N)[counts], rows[counts], at[counts]
+    np.add.at(meets.left_out, rows[left_out], 1)
+    np.add.at(meets.counted, row, 1)
+    np.add.at(meets.overloaded, row[used > 1.0], 1)
+    np.maximum.at(meets.longest_m, row, length_m[counts])
+    # In ascending order the last of each cable's cell, which is its largest, is what stays.
+    cell = cells[of_pose]
+    order = np.lexsort((used, cell, row))
+    is_last = np.diff(row[order], append=-1) | np.diff(cell[order], append=-1)
+    order = order[is_last != 0]
+    order = order[used[order] > meets.utilisation[row[order], cell[order]]]
+    meets.utilisation[row[order], cell[order]] = used[order]
+    meets.pose[row[order], cell[order]] = of_pose[order]
 
 
-def _may_serve_better(statics: Statics, cable: Cable, leaves_out_hanging: bool) -> BoolArray:
+def _may_serve_better(
+    statics: Statics, cable: Cable | Cables, allowable_N: FloatArray, leaves_out_hanging: bool
+) -> BoolArray:
     """Tell in which poses (n,) another branch is to be tried, as this one does not serve.
 
     A cable that exceeds the largest sag in the branches of one pose does not serve, whatever
     those of other poses are: the pose where it hangs lowest is tried before them.
     """
     robot, poses = statics.robot, statics.poses
-    doubtful = statics.largest_tension_N > cable.allowable_tension_N
+    doubtful = statics.largest_tension_N > allowable_N
     if leaves_out_hanging:
         doubtful |= statics.hangs_below
     if not robot.is_redundant or robot.sag_max is None:

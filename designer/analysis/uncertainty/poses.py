@@ -115,9 +115,9 @@ class GoverningCandidates:
         poses, cells = Poses.at(self.places), np.arange(len(self.places))
         exclude = self.workspace.hangs_below == "exclude"
         meets = meet(robot, poses, ropes, cells, len(cells), leaves_out_hanging=exclude)
-        for row in np.flatnonzero(meets.failed.any(axis=1)).tolist():
-            hard = np.flatnonzero(meets.failed[row])
-            add_slowly(meets, row, robot, poses, ropes[row], cells, exclude, hard)
+        rows, at = np.nonzero(meets.failed)
+        if len(rows):
+            add_slowly(meets, robot, poses, ropes, rows, at, cells, exclude)
         used = np.empty_like(meets.utilisation)
         used[order] = np.where(meets.failed, np.inf, meets.utilisation)
         return used
