@@ -118,17 +118,19 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         e.key: stopped.get(e.key) or _missing(e, recorded) or _too_few(e, measured) for e in effects
     }
     visible = [e for e in effects if not skipped[e.key]]
+    unknown = [_less_known_zero(e, fixed) for e in visible if is_unknown(e, measurements)]
+    n_sessions = len(measurements.sessions)
     given = tuple(
-        _as_unknown(_less_known_zero(e, fixed), measurements, machine)
-        for e in visible
-        if is_unknown(e, measurements)
+        _as_unknown(less, measurements, machine)
+        for e in unknown
+        if (less := beside_given(e, unknown, n_sessions)).parameters
     )
     if not measured.has_poses:
         given, note = in_a_held_frame(given, machine.robot, measured)
         measured = replace(measured, notes=(*measured.notes, *note))
     given_keys = {e.key for e in given}
     others = [e for e in visible if e.key not in given_keys]
-    beside = [beside_given(e, given, len(measurements.sessions)) for e in others]
+    beside = [beside_given(e, given, n_sessions) for e in others]
     skipped |= {e.key: "is a part of what is unknown" for e in beside if not e.parameters}
     lacking = {
         e.key: stopped.get(e.key) or _missing_in_sight(e, recorded) for e in fixed_effects.values()

@@ -217,3 +217,31 @@ def test_poses_that_only_a_mirrored_robot_holds_are_told_so(tmp_path: Path) -> N
     unread = np.full_like(dataset.length_m, np.nan)
     with pytest.raises(InputError, match=r"with x counted the other way, it can hold 120"):
         diagnosed(replace(dataset, length_m=unread), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("unknown", "given", "still_tried"),
+    [
+        (
+            ["winch_scale of cable 1"],
+            {"winch_scale of cable 1": ["scale", "offset_m"]},
+            ["winch_zero of cable 2", "winch_zero of cable 3"],
+        ),
+        (
+            ["winch_scale of cable 1", "winch_zero of cable 1", "length_offset"],
+            {
+                "winch_scale of cable 1": ["scale"],
+                "length_offset": ["offset_1_m", "offset_2_m", "offset_3_m"],
+            },
+            [],
+        ),
+    ],
+)
+def test_a_zero_is_unknown_once_and_of_its_own_winch(unknown, given, still_tried, tmp_path) -> None:
+    make(YARD3, seed=7510, rows=20).write(tmp_path)
+    study = read_study(tmp_path / "config.yaml")
+    assert study.measurements is not None
+    measurements = replace(study.measurements, unknown=tuple(unknown))
+    case = case_of(study, measurements, read_measured(study))
+    assert {e.key: [p.name for p in e.parameters] for e in case.given} == given
+    assert [e.key for e in case.candidates if e.id == "winch_zero"] == still_tried
