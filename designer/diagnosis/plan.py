@@ -22,6 +22,7 @@ from designer.diagnosis.problem import Problem
 from designer.documents.plain import json_text
 from designer.effects.effect import Effect, Parameter, as_built
 from designer.errors import InputError
+from designer.measured.rows import FEWEST_ROWS
 from designer.model.cable import Cable
 from designer.model.measured_data import Measured, Noise
 from designer.model.measurements import Measurements
@@ -171,7 +172,8 @@ def plan(
     cable : Cable
         That is on the machine, with what it may be pulled by.
     n_poses : int, optional
-        How many; twice as many as it takes to have more readings than unknowns, if left out.
+        How many; if left out, twice as many as it takes to have more readings than unknowns, and
+        no fewer than a diagnosis asks for.
     progress : callable
         Told what is being done.
 
@@ -201,7 +203,9 @@ def _plan(
     typical = np.array([p.typical for _, p in parameters])
     n_read = max(int(np.isfinite(problem.measured.readings[0]).sum()), 1)
     net = max(n_read - problem.predict.row_unknowns, 1)
-    count = n_poses or min(max(2 * -(-len(parameters) // net), 6), len(places), MOST_POSES)
+    count = n_poses or min(
+        max(2 * -(-len(parameters) // net), FEWEST_ROWS), len(places), MOST_POSES
+    )
     if count > len(places):
         expected = f"at most {len(places)}: as many of those tried does the robot hold"
         raise InputError.at("--poses", f"is {count}", expected)

@@ -17,6 +17,7 @@ from designer.diagnosis.calibration import told_by
 from designer.diagnosis.fit import fit
 from designer.diagnosis.plan import candidates, exchanged, plan, slopes_at
 from designer.io.config import read_study
+from designer.measured.rows import FEWEST_ROWS
 from designer.model.cable import Cable
 from designer.model.robot import Poses
 
@@ -85,6 +86,13 @@ def test_deviations_of_slopes_are_those_of_the_normal_equations() -> None:
     assert told.std == pytest.approx(np.sqrt(np.diag(inverse)))
     twins = np.concatenate([slopes, slopes[..., :1]], axis=-1)
     assert list(told_by(twins, 9).is_settled) == [False, True, True, True, False]
+
+
+def test_a_plan_has_as_many_poses_as_its_diagnosis_asks_for(tmp_path) -> None:
+    """Lengths and tensions tell nine unknowns in four poses; eight rows are read at least."""
+    study = read_study(config(tmp_path, length="2 mm", tension="8 N"))
+    answer = plan(study, study.measurements, study.measurements.cable())
+    assert len(answer.places) == FEWEST_ROWS
 
 
 def test_too_few_poses_leave_something_untold(tmp_path, designer) -> None:
