@@ -24,8 +24,11 @@ _REPEATED = "Several times, once for each."
 
 
 def catalog_new(
-    table: Annotated[Path, argument("TABLE", "CSV file or Excel workbook, a row for each size.")],
+    table: Annotated[Path, argument("TABLE", "CSV, Excel workbook or PDF, a row for each size.")],
     output: Annotated[Path | None, output_option("TABLE's name with .yaml", "FILE")] = None,
+    page: Annotated[
+        int | None, typer.Option(metavar="N", min=1, help="Page of a PDF that the table is on.")
+    ] = None,
     column: Annotated[
         list[str] | None,
         typer.Option(
@@ -81,7 +84,7 @@ def catalog_new(
     columns, units = _pairs("--column", column, FIGURES), _pairs("--unit", unit, FIGURES[1:])
     texts = _pairs("--set", field, TEXTS)
     lender = None if like is None else _grade(like, no_plugins)
-    maker_table = read_maker_table(table, columns, _choose if _asks() else lambda *_: None)
+    maker_table = read_maker_table(table, columns, _choose if _asks() else lambda *_: None, page)
     units = _units(maker_table, units)
     rows = maker_table.rows(units)
     _print_table(maker_table, units, len(rows))

@@ -13,6 +13,7 @@ from designer.documents.opened import open_input, reason
 from designer.errors import Fault, InputError
 from designer.grades.grade import MOST_SIZES
 from designer.grades.parts import DIMENSIONS
+from designer.io.pdf_table import pdf_rows
 from designer.measured.formats import cells_of
 from designer.units import QuantityError, read_quantity
 
@@ -21,7 +22,7 @@ FIGURES = (SIZE, *DIMENSIONS)
 NEEDED = ("diameter", "minimum_breaking_load", "linear_mass")
 _MOST_ABOVE = 20
 """Lines above the head, such as a title."""
-_EXPECTED = "a CSV file or an Excel workbook with a row for each size"
+_EXPECTED = "a CSV file, an Excel workbook or a PDF with a row for each size"
 
 _HEADS = {
     SIZE: r"size|item|article|artikel|part n|code|ref|bezeichnung|nenngr",
@@ -145,18 +146,24 @@ Choose = Callable[[str, Sequence[str], str], int | None]
 
 
 def read_maker_table(
-    path: Path, named: Mapping[str, str], choose: Choose = lambda *_: None
+    path: Path,
+    named: Mapping[str, str],
+    choose: Choose = lambda *_: None,
+    page: int | None = None,
 ) -> MakerTable:
     """Return the table in a file: its columns guessed from their heads where they are not named.
 
     Parameters
     ----------
     path : Path
-        A CSV file, of commas, semicolons or tabs, or an Excel workbook.
+        A CSV file, of commas, semicolons or tabs, an Excel workbook, or a PDF; of the latter a line
+        is a row of its table.
     named : mapping
         Heads of columns, or their numbers from 1, by what they are.
     choose : callable
         Asked where a column is in doubt; None is no answer.
+    page : int or None
+        Where the table of a PDF stands, from 1; None where no other page has such a table.
 
     Raises
     ------
@@ -168,11 +175,15 @@ def read_maker_table(
     except (OSError, ValueError) as error:
         raise InputError.at(path, f"the file cannot be read: {reason(error)}", _EXPECTED) from None
     with file:
-        if file.read(5) == b"%PDF-":
-            problem = "this is a PDF, in which tables have no columns that a program can trust"
-            raise InputError.at(path, problem, f"{_EXPECTED}: copy the table into one")
+        is_pdf = file.read(5) == b"%PDF-"
         file.seek(0)
-        rows, _ = cells_of(file, str(path))
+        if page is not None and not is_pdf:
+            raise InputError.at("--page", f"{path} is no PDF", "the page of a PDF")
+        rows = (
+            enumerate(pdf_rows(file, str(path), page, _has_head), start=1)
+            if is_pdf
+            else cells_of(file, str(path))[0]
+        )
         lines = [*islice(rows, MOST_SIZES + 4 * _MOST_ABOVE)]
     if not lines:
         raise InputError.at(path, "the file is empty", _EXPECTED)
@@ -210,6 +221,10 @@ def read_maker_table(
         texts = [_cell(cells, diameter) for _, cells in below]
         columns["diameter"] = replace(diameter, unit=_unit_of_cells(texts))
     return MakerTable(str(path), head_line, heads, columns, tuple(below))
+
+
+def _has_head(rows: Sequence[Sequence[str]]) -> bool:
+    return any(map(_is_head, rows[:_MOST_ABOVE]))
 
 
 def _is_head(cells: Sequence[str]) -> bool:

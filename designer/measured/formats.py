@@ -79,11 +79,18 @@ def cells_of(file: BinaryIO, name: str) -> tuple[Rows, Callable[[], str]]:
         limit = f"at most {LARGEST_FILE_BYTES / 1e6:g} MB"
         refuse(name, None, "the file is too large", limit)
     digest.update(content)
-    library = _library(kind.module, kind.extra, kind.called, name)
+    library = library_of(kind.module, kind.extra, kind.called, name)
     return _checked(kind, kind.rows(library, io.BytesIO(content)), name), digest.hexdigest
 
 
-def _library(module: str, extra: str, called: str, name: str) -> Any:
+def library_of(module: str, extra: str, called: str, name: str) -> Any:
+    """Return the library that reads a file of an optional format.
+
+    Raises
+    ------
+    InputError
+        If it is not installed; names the extra that brings it.
+    """
     try:
         return importlib.import_module(module)
     except ImportError:
@@ -162,7 +169,7 @@ def read_bag(path: Path, wanted: Sequence[str]) -> list[LogTable]:
     InputError
         If it cannot be read, or has none of the topics.
     """
-    highlevel = _library("rosbags.highlevel", "ros", "a bag of ROS", str(path))
+    highlevel = library_of("rosbags.highlevel", "ros", "a bag of ROS", str(path))
     typesys = importlib.import_module("rosbags.typesys")
     standard = typesys.get_typestore(typesys.Stores.LATEST)
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -143,6 +144,74 @@ def test_a_workbook_is_a_table() -> None:
     assert len(read_grade(Path("acme.yaml")).sizes) == 2
 
 
+ROPES = ("8,45.1,48,.262", "10,70.4,75,.409", "12,101,108,.589", "16,180,192,1.05")
+
+
+def pdf(*, pages: int = 1, lines: bool = True, comma: bool = False) -> str:
+    """Write a PDF with a title and a table of ropes on each page; returns its name."""
+    book = pytest.importorskip("plutoprint")
+    pytest.importorskip("pdfplumber")
+    rows = [row.replace(",.", ",0.").split(",") for row in ROPES]
+    if comma:
+        rows = [[cell.replace(".", ",") for cell in row] for row in rows]
+    cells = "".join("<tr>" + "".join(f"<td>{c}</td>" for c in row) + "</tr>" for row in rows)
+    head = "<tr><th>Diameter mm<th>Min. breaking<br>load kN<th>Average kN<th>Mass kg/m</tr>"
+    border = "td, th {border: 1px solid black}" if lines else ""
+    table = f"<h1>Acme</h1><p>Ropes, and words.</p><table>{head}{cells}</table><p>0 to 5 %.</p>"
+    style = f"<style>table {{border-collapse: collapse}} {border}</style>"
+    made = book.Book(book.PAGE_SIZE_A4)
+    made.load_html(style + "<div style='page-break-before: always'></div>".join([table] * pages))
+    made.write_to_pdf("acme.pdf")
+    return "acme.pdf"
+
+
+@pytest.mark.parametrize(
+    ("options", "page"), [({}, ()), ({"comma": True}, ()), ({"pages": 2}, ("--page", "2"))]
+)
+def test_a_table_of_a_pdf_becomes_a_checked_grade(options: dict, page: tuple[str, ...]) -> None:
+    command = ["catalog", "new", pdf(**options), *page, *LIKE, *SAID]
+    result = CliRunner().invoke(app, command)
+    assert result.exit_code == 0, result.output
+    assert "left out: Average kN" in result.output
+    grade = read_grade(Path("acme.yaml"))
+    assert [size.id for size in grade.sizes] == ["8 mm", "10 mm", "12 mm", "16 mm"]
+    assert grade.sizes[1].minimum_breaking_load_N == pytest.approx(70.4e3)
+    assert grade.sizes[1].linear_density_kg_per_m == pytest.approx(0.409)
+    assert grade.source.document == "acme.pdf"
+
+
+@pytest.mark.parametrize(
+    ("options", "page", "told"),
+    [
+        ({"lines": False}, (), "there is no table in it whose head names a breaking load"),
+        ({"pages": 2}, (), "on the pages 1, 2 (expected --page N)"),
+        ({}, ("--page", "2"), "there is no table in page 2"),
+    ],
+)
+def test_a_pdf_that_cannot_be_trusted_is_refused(
+    options: dict, page: tuple[str, ...], told: str
+) -> None:
+    result = CliRunner().invoke(app, ["catalog", "new", pdf(**options), *page, *LIKE, *SAID])
+    assert isinstance(result.exception, InputError), result.output
+    (fault,) = result.exception.faults
+    assert told in str(fault)
+    assert not Path("acme.yaml").exists()
+
+
+def test_a_damaged_pdf_gets_a_line() -> None:
+    pytest.importorskip("pdfplumber")
+    (line,) = refused("%PDF-1.7\n")
+    assert line.startswith("acme.csv: this is no PDF that can be read")
+
+
+def test_the_library_for_pdfs_is_named_where_it_is_missing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(sys.modules, "pdfplumber", None)
+    (line,) = refused("%PDF-1.7\n")
+    assert "pip install 'cdpr-designer[pdf-tables]', or a CSV file" in line
+
+
 OFF = GERMAN.replace("12;12;101;58,9", "12;12;85;58,9")
 
 
@@ -208,7 +277,7 @@ def test_what_is_in_doubt_is_asked_for_on_a_terminal(monkeypatch: pytest.MonkeyP
     [
         ("", (), "acme.csv: the file is empty"),
         ("a,b\n1,2\n", (), "acme.csv:1: diameter: no column is known to be it, of a, b"),
-        ("%PDF-1.7\n", (), "acme.csv: this is a PDF"),
+        (GERMAN, ("--page", "2"), "--page: acme.csv is no PDF"),
         (GERMAN.replace("70,4", "x"), (), "acme.csv:3: Mindestbruchkraft (kN): holds 'x'"),
         (GERMAN.replace("70,4", ""), (), "acme.csv:3: Mindestbruchkraft (kN): holds nothing"),
         (GERMAN.partition("10;10")[0], (), "acme.csv: there is no size below the head"),

@@ -1,0 +1,105 @@
+"""The table of ropes in a PDF, as rows of texts.
+
+Only tables whose cells are drawn with lines are read. Without lines, cells have to be guessed from
+how words are aligned, which was seen to lose the ends of texts, and so would lose digits.
+"""
+
+from __future__ import annotations
+
+import io
+import logging
+import re
+from collections.abc import Callable
+from typing import Any, BinaryIO
+
+from designer.errors import InputError
+from designer.measured.formats import library_of
+
+_LARGEST_BYTES = 50_000_000
+_MOST_PAGES = 200
+_EXPECTED = "a table of text with lines between its cells; others are copied into a CSV file"
+_WITH_COMMA = re.compile(r"\d+,(?:\d{1,2}|\d{4,})|0,\d+")
+_WITH_POINT = re.compile(r"\d+\.\d+")
+_NUMBER = re.compile(r"\d+,\d+")
+
+PdfRows = list[list[str]]
+
+
+def pdf_rows(
+    file: BinaryIO, name: str, page: int | None, has_head: Callable[[PdfRows], bool]
+) -> PdfRows:
+    """Return the rows of the one table in a PDF that has a head, or that is alone on a page.
+
+    Parameters
+    ----------
+    file : binary file
+    name : str
+        The file, for messages.
+    page : int or None
+        The only page to look at, from 1; None for all.
+    has_head : callable
+        Tells whether rows begin as a table of ropes does.
+
+    Raises
+    ------
+    InputError
+        If the library that reads such files is missing, the file is damaged or too large, or it
+        holds no such table or several.
+    """
+    library = library_of("pdfplumber", "pdf-tables", "a PDF", name)
+    content = file.read(_LARGEST_BYTES + 1)
+    if len(content) > _LARGEST_BYTES:
+        expected = f"at most {_LARGEST_BYTES / 1e6:g} MB"
+        raise InputError.at(name, "the file is too large", expected)
+    try:
+        tables = _tables(library, content, name, page)
+    except InputError:
+        raise
+    except Exception as error:  # whatever a damaged file makes of its reader
+        problem = " ".join(f"this is no PDF that can be read: {error}".split())[:200]
+        raise InputError.at(name, problem.rstrip(": "), _EXPECTED) from None
+    known = [(number, rows) for number, rows in tables if has_head(rows)]
+    if page is not None and not known and len(tables) == 1:
+        known = tables
+    if not known:
+        where = "it" if page is None else f"page {page}"
+        problem = f"there is no table in {where} whose head names a breaking load"
+        raise InputError.at(name, problem, _EXPECTED)
+    if len(known) > 1:
+        pages = list(dict.fromkeys(str(number) for number, _ in known))
+        if len(pages) == 1:
+            problem = f"page {pages[0]} has {len(known)} tables with a breaking load"
+            raise InputError.at(name, problem, "one of them, copied into a CSV file")
+        problem = f"there are tables with a breaking load on the pages {', '.join(pages)}"
+        raise InputError.at(name, problem, "--page N")
+    return _with_points(known[0][1])
+
+
+def _tables(library: Any, content: bytes, name: str, page: int | None) -> list[tuple[int, PdfRows]]:
+    """Return the tables of all pages, or of one, with the number of the page."""
+    logging.getLogger("pdfminer").setLevel(logging.ERROR)  # it warns of fonts and colours
+    with library.open(io.BytesIO(content)) as pdf:
+        if page is None and len(pdf.pages) > _MOST_PAGES:
+            raise InputError.at(name, f"it has {len(pdf.pages)} pages", "--page N")
+        pages = pdf.pages if page is None else pdf.pages[page - 1 : page]
+        return [(p.page_number, rows) for p in pages for rows in _tables_of(p)]
+
+
+def _tables_of(page: Any) -> list[PdfRows]:
+    return [
+        [[" ".join((cell or "").split()) for cell in row] for row in rows]
+        for rows in page.extract_tables()
+    ]
+
+
+def _with_points(rows: PdfRows) -> PdfRows:
+    """Return rows with decimal points, if their numbers have decimal commas.
+
+    So they have if one of them has other than three digits behind its comma, or a zero alone before
+    it, and none has a point.
+    """
+    cells = [cell for row in rows for cell in row]
+    is_comma = any(map(_WITH_COMMA.fullmatch, cells)) and not any(map(_WITH_POINT.fullmatch, cells))
+    if not is_comma:
+        return rows
+    return [[c.replace(",", ".") if _NUMBER.fullmatch(c) else c for c in row] for row in rows]
