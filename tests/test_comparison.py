@@ -142,6 +142,9 @@ def priced(cost: float | None, currency: str | None, estimate: bool = False) -> 
             -0.5,
         ),
         (priced(None, None), priced(4.0, "EUR"), "cost [EUR]", (None, 4.0), None),
+        (priced(8.0, None), priced(4.0, None), "cost", (8.0, 4.0), -0.5),
+        (priced(8.0, None), priced(4.0, "EUR"), "cost", ("8 without a currency", "4 EUR"), None),
+        (priced(0.0, None), priced(0.0, None), "cost", (0.0, 0.0), None),
     ],
 )
 def test_costs_have_a_currency_and_say_what_is_borrowed(a, b, label, values, relative) -> None:

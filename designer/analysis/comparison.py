@@ -171,11 +171,15 @@ def _with_currency(
     sides = [(name, side) for name, side in (("A", of_a), ("B", of_b)) if side.get(_COST)]
     borrowed = [name for name, side in sides if side.get("selection.price_estimate.year")]
     estimate = f", a borrowed estimate in {' and '.join(borrowed)}" if borrowed else ""
-    currencies = {side["selection.currency"] for _, side in sides}
-    if len(currencies) == 1:
-        return replace(line, label=f"{line.label} [{currencies.pop()}]{estimate}")
-    a, b = (f"{side[_COST]:.4g} {side['selection.currency']}" for _, side in sides)
-    return replace(line, label=line.label + estimate, a=a, b=b)
+    currencies = [side.get("selection.currency") for _, side in sides]
+    if len({*currencies}) == 2:
+        a, b = (
+            f"{side[_COST]:.4g} {currency or 'without a currency'}"
+            for (_, side), currency in zip(sides, currencies, strict=True)
+        )
+        return replace(line, label=line.label + estimate, a=a, b=b)
+    unit = f" [{currencies[0]}]" if any(currencies) else ""
+    return replace(line, label=f"{line.label}{unit}{estimate}")
 
 
 def _lines(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[ComparisonLine]:

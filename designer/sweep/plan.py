@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -27,8 +28,8 @@ from designer.documents.document import (
 from designer.documents.fields import FreeMapping, Text, WholeNumber, different, list_of
 from designer.documents.section import Section, schema_faults
 from designer.errors import Fault, InputError
-from designer.selection.candidate import common_currency
-from designer.selection.prices import offered, with_prices
+from designer.selection.candidate import common_currency, is_allowed
+from designer.selection.prices import with_prices
 from designer.study import Study
 from designer.sweep.point import Base, value_at, why_no_value
 from designer.units import describe
@@ -115,8 +116,8 @@ class SweepPlan:
     goals : mapping
         Of numbers that are kept: 1 for the less the better, -1 for the more the better.
     attributes : mapping
-        Of prices that are kept: their currency as ``units``, and ``estimate`` where the study as it
-        is borrows them.
+        Of prices that are kept: their currency as ``units``, and ``estimate`` where they are
+        borrowed; the same at all points.
     digest : str
         SHA-256 of all that the results depend on.
     """
@@ -234,28 +235,63 @@ def read_sweep(path: Path, with_plugins: bool) -> SweepPlan:
     columns = columns_of(
         tuple(fields.values()), section.sampling, section.points or 0, section.seed
     )
-    study = base.study()
-    files = [source.sha256 for source in base.catalogue(study).sources]
-    files += [sha256 for _, sha256 in study.source.tables]
-    origin = [document.root.as_written(), base.document.sha256, *files, __version__]
+    studies = list(_studies(base, fields.values()))
+    files = [source.sha256 for study in studies for source in base.catalogue(study).sources]
+    files += [sha256 for study in studies for _, sha256 in study.source.tables]
+    origin = [document.root.as_written(), base.document.sha256, *dict.fromkeys(files), __version__]
     digest = hashlib.sha256(json.dumps(origin).encode()).hexdigest()
-    attributes = _price_attributes(study, base, section.keep)
+    attributes = _price_attributes(document, studies, base)
     return SweepPlan(base, columns, kinds, goals, attributes, digest)
 
 
-def _price_attributes(study: Study, base: Base, keep: Sequence[str]) -> dict[str, dict[str, str]]:
-    """Return the currency of each price that is kept, and what is borrowed."""
-    selection, names = study.selection, [name for name in keep if name.endswith(".cost")]
-    if selection is None or not names:
+def _studies(base: Base, varied: Iterable[Range | ValueList]) -> Iterator[Study]:
+    """Yield the study as it is, and with each value that is no number: it may name another file."""
+    yield base.study()
+    for field in varied:
+        if isinstance(field, ValueList) and field.numbers is None:
+            for node in field.nodes:
+                with suppress(InputError):  # such points are kept with their reason
+                    yield base.study([(field.keys, node)])
+
+
+def _price_attributes(
+    document: Document, studies: Sequence[Study], base: Base
+) -> dict[str, dict[str, str]]:
+    """Return the currency of each price that is kept, and what is borrowed.
+
+    Raises
+    ------
+    InputError
+        If these are not the same at all points.
+    """
+    names = [name for name in base.keep if name.endswith(".cost")]
+    if not names:
         return {}
-    grades = base.catalogue(study).grades
-    currency = common_currency(offered(grades, selection))
-    _, estimate = with_prices(grades, selection)
-    attributes = {} if currency is None else {"units": currency}
-    if estimate is not None:
-        share = f"may be {estimate.low:g} to {estimate.high:g} times as much"
-        attributes["estimate"] = f"borrowed, of {estimate.year}, {share}: {estimate.source}"
-    return dict.fromkeys(names, attributes)
+    each = [_attributes_of_prices(study, base) for study in studies]
+    different = [one for k, one in enumerate(each) if one and one not in each[:k]]
+    if len(different) > 1:
+        found = " and ".join(
+            f"borrowed in {one['units']}" if "estimate" in one else f"in {one['units']}"
+            for one in different
+        )
+        expected = "points whose prices can be compared, or no prices in keep"
+        _refuse([document.fault(("vary",), f"its points have prices {found}", expected)])
+    return dict.fromkeys(names, different[0] if different else {})
+
+
+def _attributes_of_prices(study: Study, base: Base) -> dict[str, str]:
+    """Return ``units``, and ``estimate`` where a study borrows its prices; nothing without any."""
+    if study.selection is None:
+        return {}
+    sold, estimate = with_prices(base.catalogue(study).grades, study.selection)
+    currency = common_currency([g for g in sold if is_allowed(g, study.selection.grades)])
+    if currency is None:
+        return {}
+    if estimate is None:
+        return {"units": currency}
+    share = f"may be {estimate.low:g} to {estimate.high:g} times as much"
+    words = f"borrowed, of {estimate.year}, {share}: {estimate.source}"
+    return {"units": currency, "estimate": words}
 
 
 def _refuse(faults: Sequence[Fault]) -> None:

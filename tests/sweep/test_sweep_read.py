@@ -113,3 +113,51 @@ def test_prices_that_are_kept_have_a_currency_and_say_what_is_borrowed(
     assert unit_of(plan.attributes["selection.chosen.cost"]) == (
         f"{units}, estimated" if estimate else units
     )
+
+
+PRICED = STUDY + (
+    "workspace: {region: {points: [[10, 6, 4]]}}\n"
+    "selection: {prices: EUR.csv, objectives: [cost], grades: [unirope-6x36-iwrc-1960]}\n"
+)
+
+
+def price_sweep(folder: Path, lists: str) -> Path:
+    """Write three lists, of one size each, and a sweep over some of them."""
+    for name, currency, price in (("EUR", "EUR", 2), ("dear", "EUR", 3), ("USD", "USD", 2)):
+        row = f"unirope-6x36-iwrc-1960,8 mm,{price},{currency},2026\n"
+        (folder / f"{name}.csv").write_text("grade,size,price_per_m,currency,date\n" + row)
+    sweep = f"study: crane.yaml\nvary: {{selection.prices: [{lists}]}}\n"
+    return written(folder, sweep + "keep: [selection.chosen.cost]\n", PRICED)
+
+
+@pytest.mark.slow
+def test_price_lists_in_one_currency_are_swept(tmp_path: Path) -> None:
+    plan = read_sweep(price_sweep(tmp_path, "EUR.csv, dear.csv"), with_plugins=False)
+    assert plan.attributes == {"selection.chosen.cost": {"units": "EUR"}}
+    costs = [
+        plan.base.result(plan.base.study(plan.changes(point)))["selection"]["chosen"]["cost"]
+        for point in range(plan.n_points)
+    ]
+    assert costs[1] == pytest.approx(1.5 * costs[0])
+
+
+@pytest.mark.slow
+def test_a_list_that_a_point_names_counts_for_the_digest(tmp_path: Path) -> None:
+    path = price_sweep(tmp_path, "EUR.csv, dear.csv")
+    before = read_sweep(path, with_plugins=False).digest
+    dear = tmp_path / "dear.csv"
+    dear.write_text(dear.read_text().replace(",3,", ",4,"))
+    assert read_sweep(path, with_plugins=False).digest != before
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("lists", "found"),
+    [("EUR.csv, USD.csv", "in EUR and in USD"), ("null", "in EUR and borrowed in USD")],
+)
+def test_prices_that_cannot_be_compared_are_refused(tmp_path: Path, lists: str, found: str) -> None:
+    (line,) = lines(price_sweep(tmp_path, lists))
+    assert line == (
+        f"2: vary: its points have prices {found} "
+        "(expected points whose prices can be compared, or no prices in keep)"
+    )
