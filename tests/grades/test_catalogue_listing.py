@@ -109,7 +109,8 @@ def test_facts_have_what_is_known_of_the_rope_at_work_and_name_the_rest():
     assert "156.9 GPa on the metallic area, 147.1 GPa when new, ±10%, printed" in guy["modulus"]
     assert guy["fill factor"].startswith("0.717 of")
     assert guy["not given"] == "rotation, permanent stretch, discard, temperature"
-    assert fibre["not given"] == "rotation, permanent stretch, discard, temperature"
+    assert fibre["not given"] == "rotation, permanent stretch, discard"
+    assert fibre["temperature"].startswith("-150 to 70 °C")
     assert fibre["creep"].startswith("high")
     assert nominal["permanent stretch"].startswith("0.25 %")
     assert nominal["not given"] == "rotation, discard"
