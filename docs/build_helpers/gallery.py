@@ -1,7 +1,10 @@
-"""The reports of the shipped studies and a page that shows them, made anew for each version."""
+"""The reports of the shipped studies and a page that shows them, made anew for other code."""
 
 import base64
+import hashlib
 from dataclasses import replace
+from functools import cache
+from pathlib import Path
 
 from sphinx.util.logging import getLogger
 
@@ -10,26 +13,42 @@ from designer.report.design.drawings import Drawings
 from designer.report.design.report import report_from
 from designer.report.figures.opengl import why_no_scenes
 from designer.report.render import write_pages
-from designer.resources import example_names, example_summary
+from designer.resources import data_folder, example_names, example_summary
 
 SAMPLES = 1000
 """Of a workspace at most, and nothing is proved: a build of the docs is to take minutes."""
 LEFT_OUT = ("fast-as-built",)
 """The example 'fast' has the same telescope."""
 _LOGGER = getLogger(__name__)
-_STAMP = f"{designer.__version__}, {SAMPLES} samples\n"
 
 
 def draw(folder, names):
-    """Make the report, the picture and the words of these studies if this version has not yet."""
+    """Make the report, the picture and the words of these studies if this code has not yet."""
     catalogue = designer.catalogue(with_plugins=False)
     for name in names:
         stamp = folder / name / "stamp"
-        if not stamp.is_file() or stamp.read_text() != _STAMP:
+        if not _is_made(stamp):
             _LOGGER.info("report of %s, for the gallery", name)
             stamp.parent.mkdir(parents=True, exist_ok=True)
             _draw(name, catalogue, stamp.parent)
-            stamp.write_text(_STAMP)
+            stamp.write_text(_stamp())
+
+
+def _is_made(stamp):
+    """Return whether a report is there, made with this code."""
+    return stamp.is_file() and stamp.read_text() == _stamp()
+
+
+@cache
+def _stamp():
+    """Return the digest of all that the reports are made with, but for libraries."""
+    digest = hashlib.sha256(f"{SAMPLES} samples".encode())
+    folders = (Path(designer.__file__).parent, data_folder("catalog"), data_folder("reports"))
+    for folder in (*folders, Path(__file__).parent):
+        for path in sorted(folder.rglob("*")):
+            if path.is_file() and "__pycache__" not in path.parts:
+                digest.update(str(path.relative_to(folder)).encode() + path.read_bytes())
+    return digest.hexdigest()
 
 
 def names():
@@ -64,7 +83,7 @@ def _words(analysis):
 
 def page(folder):
     """Return the gallery: for each study its picture, what was chosen, and its report."""
-    made = (name for name in names() if (folder / name / "stamp").is_file())
+    made = (name for name in names() if _is_made(folder / name / "stamp"))
     return "\n".join(_entry(name, folder / name) for name in made)
 
 
