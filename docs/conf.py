@@ -7,8 +7,8 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "build_helpers"))
 
 import figures  # noqa: E402
-import gallery  # noqa: E402
 import generated  # noqa: E402
+from gallery import draw, names  # noqa: E402  # not as `gallery`, which is a config value
 
 from designer import __version__  # noqa: E402
 
@@ -49,7 +49,7 @@ html_math_renderer = "mathml"
 def setup(app):
     """Fill the pages that are made from the code, and draw the figures."""
     app.connect("builder-inited", lambda app: figures.draw_all(HERE / "explanation" / "figures"))
-    app.add_config_value("gallery", gallery.names(), "env")  # as -D gallery=yard,stadium
-    app.connect("builder-inited", lambda app: gallery.draw(generated.GALLERY, app.config.gallery))
+    app.add_config_value("gallery", names(), "env")  # as -D gallery=yard,stadium
+    app.connect("builder-inited", lambda app: draw(generated.GALLERY, app.config.gallery))
     app.connect("env-get-outdated", lambda *_: ["gallery"])  # though its own text is as it was
     app.connect("source-read", generated.fill)
