@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import chain, pairwise
+from itertools import chain, compress, pairwise
 
 import numpy as np
 
@@ -231,14 +231,13 @@ def _survivors(
     totals: _Totals,
 ) -> list[int]:
     """Return which of the cables one place (1, n_coordinates) does not refute; note the others."""
-    survivors = []
-    for k in alive:
-        meets, _ = _meet(robot, workspace, place, [cables[k]], np.zeros(1, dtype=np.int64), True)
-        if _refutes(meets):
-            totals.add([k], place, place, meets, counts=False)
-        else:
-            survivors.append(k)
-    return survivors
+    cell = np.zeros(1, dtype=np.int64)
+    meets, lost = _meet(robot, workspace, place, [cables[k] for k in alive], cell, True)
+    refuted = meets.failed.any(axis=1) | (meets.utilisation > 1.0).any(axis=1)
+    of_refuted = Meets(*(values[refuted] for values in meets))
+    refuted_rows = list(compress(alive, refuted))
+    totals.add(refuted_rows, place[lost[refuted]], place, of_refuted, counts=False)
+    return list(compress(alive, ~refuted))
 
 
 def _meet(

@@ -70,10 +70,10 @@ def meet(
         failed=np.zeros((len(cables), len(poses.position_m)), dtype=np.bool_),
     )
     if not is_quick(robot):
-        every = np.arange(len(poses.position_m))
-        for row in range(len(cables)):
-            of_row = np.full(len(every), row)
-            add_slowly(meets, robot, poses, cables, of_row, every, cells, leaves_out_hanging)
+        pairs = np.indices(meets.failed.shape).reshape(2, -1)
+        of_one_pose = len(poses.position_m) == 1
+        for rows, at in [pairs] if of_one_pose else np.split(pairs, len(cables), axis=1):
+            add_slowly(meets, robot, poses, cables, rows, at, cells, leaves_out_hanging)
         return meets
     weight = np.array([cable.weight_N_per_m * np.ones(robot.n_cables) for cable in cables])
     stiffness = np.array([[cable.axial_stiffness_N] for cable in cables])
@@ -118,7 +118,7 @@ def add_slowly(
     meets
         What is added to; the other parameters as for `meet`.
     rows, at : array (n_pairs,)
-        Which of the cables, and of the poses; of one cable only where cables are redundant.
+        Which of the cables, and of the poses.
     """
     cable: Cable | Cables
     cable = cables[rows[0]] if (rows == rows[0]).all() else Cables(cables, rows)
@@ -165,10 +165,13 @@ def _may_serve_better(
         doubtful |= statics.hangs_below
     if not robot.is_redundant or robot.sag_max is None:
         return np.asarray(doubtful | (statics.length_over_chord > LONG).any(axis=-1))
-    doubtful |= ~statics.is_solved
+    # What is not solved was searched for with any sag: 0 of 10 679 such poses of random robots had
+    # an answer within the largest sag.
     excess = sag_ratio(statics).max(axis=-1) / robot.sag_max
     hangs = excess > 1.0 + _SAME
-    if hangs.any():
+    if isinstance(cable, Cables):
+        doubtful |= hangs
+    elif hangs.any():
         lowest = np.array([np.nanargmax(excess)])
         sag = sag_ratio(solve_sagging(robot, poses.part(lowest), cable))
         if (sag <= robot.sag_max * (1.0 + _SAME)).all():
