@@ -233,8 +233,8 @@ def _survivors(
     """Return which of the cables one place (1, n_coordinates) does not refute; note the others."""
     cell = np.zeros(1, dtype=np.int64)
     meets, lost = _meet(robot, workspace, place, [cables[k] for k in alive], cell, True)
-    refuted = meets.failed.any(axis=1) | (meets.utilisation > 1.0).any(axis=1)
-    of_refuted = Meets(*(values[refuted] for values in meets))
+    refuted = np.asarray(meets.failed.any(axis=1) | (meets.utilisation > 1.0).any(axis=1))
+    of_refuted = Meets._make(values[refuted] for values in meets)
     refuted_rows = list(compress(alive, refuted))
     totals.add(refuted_rows, place[lost[refuted]], place, of_refuted, counts=False)
     return list(compress(alive, ~refuted))
