@@ -79,6 +79,7 @@ CASES = [
     (YARD3, "winch_scale", {"cable": 1, "scale": 1.003}),
     (HALL6, "winch_zero", {"cable": 6, "offset_m": 0.02}),
     (YARD3, "cable_creep", {"cable": 2, "strain_per_decade": 1e-3, "onset_s": 600.0}),
+    (YARD3, "cable_pulley_radius", {"cable": 2, "radius_m": 0.024}),
 ]
 
 

@@ -340,6 +340,16 @@ def test_a_larger_pulley_of_one_cable_is_that_of_all(machine, measured):
     assert (one - LENGTH_M)[:, [0, 2]] == pytest.approx(np.zeros((3, 2)), abs=1e-15)
 
 
+def test_pulleys_turn_the_pulls_of_single_cables_as_those_of_all(machine, measured):
+    straight = readings_with(machine, measured)
+    of_all = readings_with(machine_with(machine, "pulley_radius", radius_m=0.05), measured)
+    effects = [effect_of(machine, "cable_pulley_radius", cable) for cable in (1, 2, 3)]
+    shown = [e.on_readings(straight, with_values(e, radius_m=0.05), measured) for e in effects]
+    added_N = sum(one.tension_N - straight.tension_N for one in shown)
+    assert added_N == pytest.approx(of_all.tension_N - straight.tension_N, rel=0.03, abs=0.05)
+    assert np.abs(added_N).max() > 1.0
+
+
 def readings_with(machine: Machine, measured: Measured) -> Readings:
     return foretold(machine, measured.poses)
 
