@@ -86,7 +86,7 @@ BOUNDS: Mapping[str, Bound] = {
     "sheave efficiency": Bound(
         units.FRACTION, 0.5, 1.0, "half is what a rope keeps that slides over a fixed body"
     ),
-    "efficiency": Bound(units.FRACTION, 0.01, 1.0, "a fitting keeps a part of the breaking load"),
+    "efficiency": Bound(units.FRACTION, 0.01, 1.0, "nothing gives more than it takes"),
     "temperature change": Bound(units.TEMPERATURE_CHANGE, -300.0, 1000.0, "steel lasts no further"),
     "temperature": Bound(units.TEMPERATURE, -200.0, 1000.0, "steel lasts no further"),
     "scale of a column": Bound(units.NUMBER, -1e12, 1e12, "units are no further apart"),
