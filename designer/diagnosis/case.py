@@ -123,7 +123,9 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     given = tuple(
         _as_unknown(less, measurements, machine)
         for e in unknown
-        if (less := beside_given(e, unknown, n_sessions)).parameters
+        if (
+            less := beside_given(e, [other for other in unknown if other is not e], n_sessions)
+        ).parameters
     )
     if not measured.has_poses:
         given, note = in_a_held_frame(given, machine.robot, measured)

@@ -14,6 +14,7 @@ from designer.errors import InputError
 from designer.grades.files import read_grade
 from designer.grades.registry import load_catalogue
 from designer.io.maker_table import known_unit, read_maker_table
+from designer.report.fonts import with_fonts
 
 GERMAN = """Acme Seile; Ausgabe 2024;;;
 Nenngröße;Ø [mm];Mindestbruchkraft (kN);Gewicht kg/100m;Preis
@@ -158,9 +159,10 @@ def pdf(*, pages: int = 1, lines: bool = True, comma: bool = False) -> str:
     head = "<tr><th>Diameter mm<th>Min. breaking<br>load kN<th>Average kN<th>Mass kg/m</tr>"
     border = "td, th {border: 1px solid black}" if lines else ""
     table = f"<h1>Acme</h1><p>Ropes, and words.</p><table>{head}{cells}</table><p>0 to 5 %.</p>"
-    style = f"<style>table {{border-collapse: collapse}} {border}</style>"
+    style = f'body {{font-family: "Report Sans"}} table {{border-collapse: collapse}} {border}'
+    body = "<div style='page-break-before: always'></div>".join([table] * pages)
     made = book.Book(book.PAGE_SIZE_A4)
-    made.load_html(style + "<div style='page-break-before: always'></div>".join([table] * pages))
+    made.load_html(with_fonts(f"<head><style>{style}</style></head><body>{body}</body>"))
     made.write_to_pdf("acme.pdf")
     return "acme.pdf"
 
