@@ -87,22 +87,35 @@ def modes_of(analysis: Analysis) -> PlatformModes | None:
         loaded = governing.case.loaded
         name = "" if analysis.qualities is None else analysis.qualities.cable.name
         density, body = loaded.moving_density_kg_per_m, loaded.moving_body
-        return _modes(governing.alone, body, density, name, governing.case.case.name)
+        return modes_at(governing.alone, body, density, name, governing.case.case.name)
     if ropes is not None:
         density = ropes.cable.linear_density_kg_per_m
-        return _modes(ropes.worst, ropes.robot.platform, density, ropes.name, ropes.load_case)
+        return modes_at(ropes.worst, ropes.robot.platform, density, ropes.name, ropes.load_case)
     sizing = analysis.worst_sizing if pose is None else pose.sizing
     if sizing is None:
         return None
     statics = sizing.statics
     density = statics.weight_N_per_m / STANDARD_GRAVITY_M_PER_S2
     name = f"{1e3 * float(sizing.diameter_m):.1f} mm of the configured family"
-    return _modes(statics, analysis.built.robot.platform, density, name, STATIC.name)
+    return modes_at(statics, analysis.built.robot.platform, density, name, STATIC.name)
 
 
-def _modes(
+def modes_at(
     statics: Statics, body: Platform, density: FloatArray | float, name: str, load_case: str
 ) -> PlatformModes | None:
+    """Return the modes about an equilibrium (); None where there is none, or no known inertia.
+
+    Parameters
+    ----------
+    statics : Statics
+        The equilibrium ().
+    body : Platform
+        What is accelerated.
+    density : float or array (n_cables,)
+        Linear density of the cables, with what moves with them [kg/m].
+    name, load_case : str
+        As in `PlatformModes`.
+    """
     if not (statics.is_solved and knows_inertia(statics.robot, body)):
         return None
     modes = platform_modes(statics, body, density)

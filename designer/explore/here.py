@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.analysis.field import cable_curves_m, chords_m
+from designer.analysis.modes import PlatformModes, modes_at
 from designer.arrays import FloatArray
-from designer.explore.question import Question, Rope, RopePerCable
+from designer.explore.question import Question, Rope, RopePerCable, cables_words
 from designer.model.cable import Cable, Cables
+from designer.model.load_case import STATIC
 from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics, solve_sagging
@@ -82,6 +84,8 @@ class Here:
         What else a reader must know; or empty.
     outside : str
         In what the pose is none of the workspace; or empty.
+    modes : PlatformModes or None
+        How the platform oscillates, winches braked; None unless solved, or of no known inertia.
     """
 
     verdict: Verdict
@@ -97,6 +101,7 @@ class Here:
     stability: str
     caution: str
     outside: str
+    modes: PlatformModes | None = None
 
     @property
     def is_solved(self) -> bool:
@@ -163,7 +168,17 @@ def here(question: Question, *, settled: bool = False) -> Here:
         stability=stability,
         caution=_caution(question, statics),
         outside=question.outside,
+        modes=_modes(question, statics, cable),
     )
+
+
+def _modes(
+    question: Question, statics: Statics, cable: Cable | Cables | None
+) -> PlatformModes | None:
+    if cable is None:
+        return None
+    body, density = question.robot.platform, cable.linear_density_kg_per_m
+    return modes_at(statics, body, density, cables_words(question.rope), STATIC.name)
 
 
 def _cables(statics: Statics, utilisation: FloatArray) -> tuple[CableHere, ...]:

@@ -8,9 +8,11 @@ import numpy as np
 from PySide6.QtWidgets import QFormLayout, QGridLayout, QHeaderView, QLabel, QVBoxLayout, QWidget
 
 from designer.explore.desktop.live_session import LiveSession
+from designer.explore.desktop.mode_window import ModeWindow
 from designer.explore.desktop.tables import Column, Table, number_column
 from designer.explore.desktop.widgets import (
     LineEntry,
+    beside,
     button,
     fill,
     grey_when_old,
@@ -128,6 +130,13 @@ class PanelHere(QWidget):
             live.keep_pose,
             "Writes this place under <b>pose:</b> of the study.",
         )
+        self.modes = ModeWindow(live, self)
+        modes = button(
+            "modes",
+            "Modes…",
+            self.modes.show,
+            "How the platform oscillates here, in a window of its own.",
+        )
         form = QFormLayout()
         form.setVerticalSpacing(2)
         for name, title, definition in _FACTS:
@@ -136,7 +145,7 @@ class PanelHere(QWidget):
         rows.setContentsMargins(8, 6, 8, 6)
         fill(rows, self._coordinates(), self.verdict, self.cautions, form, self.stability)
         rows.addWidget(self.table, 1)
-        rows.addWidget(keep)
+        rows.addLayout(beside(keep, modes))
         live.moved.connect(self._show_place)
         live.listen(self._show_here, "here")
         results = self.verdict, self.cautions, self.stability, self.table, *self.facts.values()

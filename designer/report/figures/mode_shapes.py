@@ -22,18 +22,28 @@ _STUB = 0.9
 _FROM_ASIDE = np.array([[0.82, -0.57, 0.0], [0.24, 0.35, 0.905]])
 _IN_PLANE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 """Right and upward of the sheet, in the frame whose z axis is the vertical."""
-_WIDTH, _HEIGHT, _MARGIN = 160.0, 120.0, 4.0
-_PERIOD_S = 2.4
+WIDTH, HEIGHT, _MARGIN = 160.0, 120.0, 4.0
+PERIOD_S = 2.4
 """Of all modes alike, since the eye cannot follow the quick ones."""
 _SINE = ".37 0 .63 1"
 """Control points of a cubic curve that is near half a period of a cosine."""
 
 
 def mode_shapes(modes: PlatformModes) -> tuple[str, ...]:
-    """Return each mode as SVG: at rest, and at its end, which moves to the other end and back.
+    """Return each mode as SVG: at rest, and at its end, which moves to the other end and back."""
+    rest, moves = on_sheet(modes)
+    return tuple(
+        _svg(number, mode, *(_path(rest + sign * move) for sign in (0.0, 1.0, -1.0)))
+        for number, (mode, move) in enumerate(zip(modes.modes, moves, strict=True), start=1)
+    )
 
-    Displacements are those of small motions, drawn far larger; that of a point is linear in its
-    lever, u + θ × r, and that of a cable falls off linearly toward its exit point.
+
+def on_sheet(modes: PlatformModes) -> tuple[FloatArray, FloatArray]:
+    """Return lines (n, 2, 2) of the platform and its cables, and how they move (n_modes, n, 2, 2).
+
+    On a sheet of `WIDTH` by `HEIGHT`, y downward. Displacements are those of small motions, drawn
+    far larger; that of a point is linear in its lever, u + θ × r, and that of a cable falls off
+    linearly toward its exit point.
     """
     statics = modes.statics
     lines, shares = _lines(statics)
@@ -42,18 +52,16 @@ def mode_shapes(modes: PlatformModes) -> tuple[str, ...]:
     moves = [_MOVES * _reach_m(robot) * _displacements(mode, lines, shares) for mode in modes.modes]
     every = np.concatenate([lines + sign * move for move in moves for sign in (1.0, -1.0)]) @ view.T
     low, high = every.min(axis=(0, 1)), every.max(axis=(0, 1))
-    sheet = np.array([_WIDTH, _HEIGHT])
+    sheet = np.array([WIDTH, HEIGHT])
     scale = float(((sheet - 2.0 * _MARGIN) / np.maximum(high - low, 1e-12)).min())
+    to_sheet = scale * view.T * [1.0, -1.0]
+    middle = 0.5 * (low + high) * scale * [1.0, -1.0]
+    return lines @ to_sheet - middle + 0.5 * sheet, np.array(moves) @ to_sheet
 
-    def on_sheet(points: FloatArray) -> str:
-        flat = (points @ view.T - 0.5 * (low + high)) * scale * [1.0, -1.0]
-        ends = (flat + 0.5 * sheet).reshape(-1, 4)
-        return "".join(f"M{x:.1f} {y:.1f}L{u:.1f} {v:.1f}" for x, y, u, v in ends.tolist())
 
-    return tuple(
-        _svg(number, mode, *(on_sheet(lines + sign * move) for sign in (0.0, 1.0, -1.0)))
-        for number, (mode, move) in enumerate(zip(modes.modes, moves, strict=True), start=1)
-    )
+def _path(lines: FloatArray) -> str:
+    ends = lines.reshape(-1, 4).tolist()
+    return "".join(f"M{x:.1f} {y:.1f}L{u:.1f} {v:.1f}" for x, y, u, v in ends)
 
 
 def _reach_m(robot: Robot) -> float:
@@ -105,11 +113,11 @@ def _svg(number: int, mode: Mode, rest: str, end: str, other_end: str) -> str:
     title = f"Mode {number} of the platform, {fmt.number(mode.frequency_Hz, 3)} Hz"
     values = f"{end};{other_end};{end}"
     return (
-        f'<svg class="mode-shape" viewBox="0 0 {_WIDTH:g} {_HEIGHT:g}" role="img" fill="none" '
+        f'<svg class="mode-shape" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="img" fill="none" '
         f'stroke-linecap="round"><title>{title}</title>'
         f'<path d="{rest}" stroke="{palette.FAINT}" stroke-width="1"/>'
         f'<path class="still" d="{end}" stroke="{palette.SAG}" stroke-width="1.6"/>'
         f'<path class="moving" display="none" d="{end}" stroke="{palette.SAG}" stroke-width="1.6">'
-        f'<animate attributeName="d" values="{values}" dur="{_PERIOD_S}s" calcMode="spline" '
+        f'<animate attributeName="d" values="{values}" dur="{PERIOD_S}s" calcMode="spline" '
         f'keyTimes="0;0.5;1" keySplines="{_SINE};{_SINE}" repeatCount="indefinite"/></path></svg>'
     )

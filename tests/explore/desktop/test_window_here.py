@@ -11,6 +11,8 @@ from window_driver import Driver
 
 import designer
 from designer.report import format as fmt
+from designer.statics.inverse import solve_sagging
+from designer.statics.modes import platform_frequencies_Hz
 
 
 def test_the_same_numbers_as_the_command(yard: Driver) -> None:
@@ -39,6 +41,30 @@ def test_every_head_says_what_it_is(yard: Driver) -> None:
             tip = model.headerData(column, Qt.Orientation.Horizontal, Qt.ItemDataRole.ToolTipRole)
             assert tip
             assert len(tip) > len("<p></p>")
+
+
+def test_modes_move_in_a_window_of_their_own(yard: Driver) -> None:
+    """Frequencies are those of the rope at this pose; what nothing holds has none."""
+    yard.press("modes")
+    shown, live = yard.window.here.modes, yard.window.live
+    yard.bot.waitUntil(shown.isVisible)
+    assert live.question is not None
+    statics = solve_sagging(live.question.robot, live.question.pose, live.question.cable)
+    density = live.question.cable.linear_density_kg_per_m
+    frequencies = platform_frequencies_Hz(statics, live.question.robot.platform, density)
+    assert [shown.chosen.itemText(k).split(": ")[1] for k in range(shown.chosen.count())] == [
+        f"{fmt.number(frequency, 3)} Hz" for frequency in frequencies.tolist()
+    ]
+    shown.chosen.setCurrentIndex(2)
+    first = shown.view.grab().toImage()
+    yard.bot.waitUntil(lambda: shown.view.grab().toImage() != first)
+    still = shown.view.grab().toImage()
+    yard.type_into("place z", "40")
+    yard.rest()
+    assert shown.chosen.count() == 0
+    assert shown.words.text().startswith("No cables hold the platform here")
+    assert shown.view.grab().toImage() != still
+    shown.close()
 
 
 def test_a_pose_that_nothing_holds_is_told(yard: Driver) -> None:
