@@ -165,8 +165,8 @@ def _may_serve_better(
         doubtful |= statics.hangs_below
     if not robot.is_redundant or robot.sag_max is None:
         return np.asarray(doubtful | (statics.length_over_chord > LONG).any(axis=-1))
-    # What is not solved was searched for with any sag: of 1563 such poses of random robots, open and
-    # not proved impossible, none had an answer that a second search found.
+    # What is not solved was searched for with any sag: of 1563 open poses of random robots a second
+    # search answered none.
     excess = sag_ratio(statics).max(axis=-1) / robot.sag_max
     hangs = excess > 1.0 + _SAME
     if isinstance(cable, Cables):
