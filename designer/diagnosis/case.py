@@ -120,13 +120,8 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     visible = [e for e in effects if not skipped[e.key]]
     unknown = [_less_known_zero(e, fixed) for e in visible if is_unknown(e, measurements)]
     n_sessions = len(measurements.sessions)
-    given = tuple(
-        _as_unknown(less, measurements, machine)
-        for e in unknown
-        if (
-            less := beside_given(e, [other for other in unknown if other is not e], n_sessions)
-        ).parameters
-    )
+    own = [beside_given(e, unknown, n_sessions) for e in unknown]
+    given = tuple(_as_unknown(e, measurements, machine) for e in own if e.parameters)
     if not measured.has_poses:
         given, note = in_a_held_frame(given, machine.robot, measured)
         measured = replace(measured, notes=(*measured.notes, *note))

@@ -55,10 +55,10 @@ def with_those_of_sessions(effects: Sequence[Effect], measurements: Measurements
 def beside_given(effect: Effect, given: Sequence[Effect], n_sessions: int) -> Effect:
     """Return an effect without the numbers that are unknown wherever it acts.
 
-    That is what is unknown of the machine, of its own session, or of every session, and not of
-    another cable.
+    That is what another effect has as unknown of the machine, of its own session, or of every
+    session, and not of another cable.
     """
-    here = [e for e in given if e.cable in (None, effect.cable)]
+    here = [e for e in given if e is not effect and e.cable in (None, effect.cable)]
     ids = {e.id for e in here if e.session in (None, effect.session)}
     if effect.session is None and n_sessions:
         of_each = [{e.id for e in here if e.session == k + 1} for k in range(n_sessions)]

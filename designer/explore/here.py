@@ -10,7 +10,7 @@ from designer.analysis.field import cable_curves_m, chords_m
 from designer.analysis.modes import PlatformModes, modes_at
 from designer.arrays import FloatArray
 from designer.explore.question import Question, Rope, RopePerCable, cables_words
-from designer.model.cable import Cable, Cables
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable, Cables
 from designer.model.load_case import STATIC
 from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
@@ -84,8 +84,8 @@ class Here:
         What else a reader must know; or empty.
     outside : str
         In what the pose is none of the workspace; or empty.
-    modes : PlatformModes or None
-        How the platform oscillates, winches braked; None unless solved, or of no known inertia.
+    statics : Statics
+        The equilibrium, if it is solved.
     """
 
     verdict: Verdict
@@ -101,12 +101,22 @@ class Here:
     stability: str
     caution: str
     outside: str
-    modes: PlatformModes | None = None
+    statics: Statics
 
     @property
     def is_solved(self) -> bool:
         """Whether cables hold the platform here."""
         return self.verdict is Verdict.SOLVED
+
+    @property
+    def modes(self) -> PlatformModes | None:
+        """How the platform oscillates, winches braked; None unless solved, or of no known inertia.
+
+        Computed when it is asked for, since it takes as long as half of the rest.
+        """
+        density = self.statics.weight_N_per_m / STANDARD_GRAVITY_M_PER_S2
+        body = self.statics.robot.platform
+        return modes_at(self.statics, body, density, cables_words(self.rope), STATIC.name)
 
     @property
     def is_too_weak(self) -> bool:
@@ -168,17 +178,8 @@ def here(question: Question, *, settled: bool = False) -> Here:
         stability=stability,
         caution=_caution(question, statics),
         outside=question.outside,
-        modes=_modes(question, statics, cable),
+        statics=statics,
     )
-
-
-def _modes(
-    question: Question, statics: Statics, cable: Cable | Cables | None
-) -> PlatformModes | None:
-    if cable is None:
-        return None
-    body, density = question.robot.platform, cable.linear_density_kg_per_m
-    return modes_at(statics, body, density, cables_words(question.rope), STATIC.name)
 
 
 def _cables(statics: Statics, utilisation: FloatArray) -> tuple[CableHere, ...]:

@@ -20,7 +20,7 @@ _MOST_PAGES = 200
 _EXPECTED = "a table of text with lines between its cells; others are copied into a CSV file"
 _WITH_COMMA = re.compile(r"\d+,(?:\d{1,2}|\d{4,})|0,\d+")
 _WITH_POINT = re.compile(r"\d+\.\d+")
-_NUMBER = re.compile(r"\d+,\d+")
+_COMMA_NUMBER = re.compile(r"\d+,\d+")
 
 PdfRows = list[list[str]]
 
@@ -102,4 +102,7 @@ def _with_points(rows: PdfRows) -> PdfRows:
     is_comma = any(map(_WITH_COMMA.fullmatch, cells)) and not any(map(_WITH_POINT.fullmatch, cells))
     if not is_comma:
         return rows
-    return [[c.replace(",", ".") if _NUMBER.fullmatch(c) else c for c in row] for row in rows]
+    return [
+        [cell.replace(",", ".") if _COMMA_NUMBER.fullmatch(cell) else cell for cell in row]
+        for row in rows
+    ]

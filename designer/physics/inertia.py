@@ -33,8 +33,6 @@ _UP_TO_NODE = (
     * np.polynomial.legendre.legval(_NODES, np.polynomial.legendre.legint(_TO_SERIES, lbnd=-1.0)).T
 )
 """From values at the nodes to integrals (node, value), on an interval of unit length."""
-_SHORT_ARC = 0.5
-"""Difference of asinh(V/F_x) below which 16 nodes integrate to rounding; see `tangent`."""
 _FOLDED_M_PER_N = 1e150
 """In place of an infinite flexibility."""
 _VERTICAL = 1e-12
@@ -104,7 +102,7 @@ def _along(
         b = -length * (_UP_TO_NODE @ (F_x * V / T**3))
         c = stretch + length * (_UP_TO_NODE @ (F_x**2 / T**3))
         x = F_x * stretch + length * (_UP_TO_NODE @ (F_x / T))
-    far = np.flatnonzero(~(angle < _SHORT_ARC))
+    far = np.flatnonzero(~(angle < tangent.SHORT_ARC))
     if len(far):
         reach, F_x, EA, w = share * length[far], F_x[far], EA[far], w[far]
         C = _regular(tangent.flexibility_m_per_N(reach, F_x, V[:, far], EA, w))

@@ -31,6 +31,8 @@ from designer.arrays import FloatArray
 from designer.physics import catenary
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
+SHORT_ARC = 0.5
+"""Difference of asinh(V/F_x) below which ten nodes or more integrate to rounding."""
 
 
 def flexibility_m_per_N(
@@ -76,7 +78,7 @@ def flexibility_m_per_N(
         V = V_0 + node * w * length
         with np.errstate(invalid="ignore", divide="ignore"):
             total = total + weight * V**2 / np.hypot(F_x, V) ** 3
-    across = np.where(angle < 0.5, length * total, (angle - turn) / w)
+    across = np.where(angle < SHORT_ARC, length * total, (angle - turn) / w)
     stretch = length / EA
     skew = -F_x * length * (F_z + V_0) / ((T_l + T_0) * T_l * T_0)
     rows = [[stretch + across, skew], [skew, stretch + turn / w]]

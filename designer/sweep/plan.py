@@ -268,15 +268,15 @@ def _price_attributes(
     if not names:
         return {}
     each = [_attributes_of_prices(study, base) for study in studies]
-    different = [one for k, one in enumerate(each) if one and one not in each[:k]]
-    if len(different) > 1:
-        found = " and ".join(
-            f"borrowed in {one['units']}" if "estimate" in one else f"in {one['units']}"
-            for one in different
+    kinds = [prices for k, prices in enumerate(each) if prices and prices not in each[:k]]
+    if len(kinds) > 1:
+        words = " and ".join(
+            f"borrowed in {prices['units']}" if "estimate" in prices else f"in {prices['units']}"
+            for prices in kinds
         )
         expected = "points whose prices can be compared, or no prices in keep"
-        _refuse([document.fault(("vary",), f"its points have prices {found}", expected)])
-    return dict.fromkeys(names, different[0] if different else {})
+        _refuse([document.fault(("vary",), f"its points have prices {words}", expected)])
+    return dict.fromkeys(names, kinds[0] if kinds else {})
 
 
 def _attributes_of_prices(study: Study, base: Base) -> dict[str, str]:

@@ -39,16 +39,25 @@ class ModeWindow(QDialog):
         for part in (self.chosen, self.view, self.words):
             column.addWidget(part, int(part is self.view))
         self.chosen.currentIndexChanged.connect(self._choose)
+        self._answer: Here | None = None
         self._lines: FloatArray | None = None
         self._moves = _NO_MOVES
         live.listen(self._show_here, "here")
         grey_when_old(live, {"here"}, self.words)
 
+    def showEvent(self, event: QShowEvent) -> None:
+        """Show what was answered while it was not seen."""
+        self._show_modes()
+        super().showEvent(event)
+
     def _show_here(self, answer: Here | None) -> None:
-        modes = None if answer is None else answer.modes
-        self._lines, self._moves = (
-            (None, np.empty((0, 0, 2, 2))) if modes is None else on_sheet(modes)
-        )
+        self._answer = answer
+        if self.isVisible():
+            self._show_modes()
+
+    def _show_modes(self) -> None:
+        modes = None if self._answer is None else self._answer.modes
+        self._lines, self._moves = (None, _NO_MOVES) if modes is None else on_sheet(modes)
         number = max(self.chosen.currentIndex(), 0)
         self.chosen.blockSignals(True)
         self.chosen.clear()
