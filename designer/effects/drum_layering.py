@@ -35,8 +35,9 @@ def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
 
 
 def _gain(machine: Machine) -> Size:
+    """Small machines have thin lines on small spools: a fifth more over the frame is plausible."""
     size = frame_size_m(machine)
-    return Size(1e-2 / size, bounds=(0.0, 0.9 / size), plausible=(0.0, 0.02))
+    return Size(1e-2 / size, bounds=(0.0, 0.9 / size), plausible=(0.0, max(0.02, 0.2 / size)))
 
 
 def _reference(machine: Machine) -> Size:

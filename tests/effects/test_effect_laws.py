@@ -256,6 +256,20 @@ def test_a_turn_pays_out_cable_at_the_largest_gain_of_a_drum(machine):
     assert 0.0 < gain.bounds[1] * frame_size_m(machine) < 1.0
 
 
+@pytest.mark.parametrize(
+    ("size_m", "gain_per_m", "believed"),
+    [(3.0, 0.04, True), (3.0, 0.1, False), (50.0, 0.015, True), (50.0, 0.025, False)],
+    ids=["line on a spool", "spool too small", "winch", "drum too small"],
+)
+def test_a_small_machine_may_have_small_spools(machine, size_m, gain_per_m, believed):
+    """A 1 mm line on a spool of 40 mm, ten turns wide: 4 % of its radius with each metre."""
+    exit_points_m = machine.robot.exit_points_m * size_m / frame_size_m(machine)
+    robot = replace(machine.robot, exit_points_m=exit_points_m)
+    effect = effect_of(Machine(robot, CABLE), "drum_layering")
+    (gain,) = (p for p in effect.parameters if "gain" in p.name)
+    assert gain.is_plausible(gain_per_m) is believed
+
+
 def poses_with(machine: Machine, poses: Poses, name: str, **values: float) -> Poses:
     effect = effect_of(machine, name)
     assert effect.on_poses is not None
