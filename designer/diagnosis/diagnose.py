@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -130,7 +130,8 @@ def _told(
         measured = replace(measured, poses=problem.predict.poses(last, problem.noise))
     compared = heldout & with_sound_lengths(problem, last)
     covariates = covariates_of(measured, problem.surroundings(last))
-    findings = tuple(_finding(outcome, e, gains[e.key]) for e in outcome.found)
+    rivals = {e.key: _rivals(outcome, e) for e in outcome.found}
+    findings = tuple(_finding(outcome, e, gains[e.key], rivals[e.key]) for e in outcome.found)
     structure = with_given_up(outcome.structure, after, problem.residual(()), measured.row_numbers)
     trend = correction = None
     if structure.present:
@@ -158,7 +159,7 @@ def _told(
         outliers=outliers_of(after, measured.row_numbers),
         left_in=trend,
         correction=correction,
-        proposals=_proposals(case, outcome, findings),
+        proposals=_proposals(case, outcome, rivals),
         doubts=tuple(_doubts(case, outcome.fit)),
         foretold_before=foretell(problem, first, compared),
         foretold_after=foretell(problem, last, compared),
@@ -198,8 +199,15 @@ def _with_settled_noise(case: Case, rows: BoolArray, progress: Pace) -> Outcome:
     return outcome
 
 
-def _finding(outcome: Outcome, effect: Effect, gain: Gain) -> Finding:
+def _rivals(outcome: Outcome, effect: Effect) -> dict[str, tuple[Effect, ...]]:
+    """Return what may stand in place of a finding, by what it is called."""
     rivals = outcome.searcher.rivals(outcome.found, effect, outcome.fit, outcome.steps)
+    return {" and ".join(e.key for e in together): together for together in rivals}
+
+
+def _finding(
+    outcome: Outcome, effect: Effect, gain: Gain, rivals: Mapping[str, tuple[Effect, ...]]
+) -> Finding:
     estimate = _estimates(outcome.fit)[effect.key]
     is_near = all(
         abs(estimate[p.name].value - p.neutral) < 2 * estimate[p.name].std
@@ -207,15 +215,19 @@ def _finding(outcome: Outcome, effect: Effect, gain: Gain) -> Finding:
         if not p.is_shape
     )
     doubt = "no value of it is further from doing nothing than twice its standard deviation"
-    set_up = [r.key for r in rivals if r.cause == "setting_up" and effect.cause == "physics"]
+    set_up = [
+        name
+        for name, together in rivals.items()
+        if effect.cause == "physics" and all(e.cause == "setting_up" for e in together)
+    ]
     return Finding(
         effect=effect,
         parameters=estimate,
-        rivals=tuple(dict.fromkeys(r.key for r in rivals)),
+        rivals=tuple(rivals),
         heldout_gain=gain.share,
         heldout_gain_std=gain.std,
         warnings=(doubt,) * is_near,
-        rule_out=tuple(dict.fromkeys(set_up)),
+        rule_out=tuple(set_up),
     )
 
 
@@ -265,20 +277,20 @@ def _stages(outcome: Outcome, problem: Problem, base: Fit, heldout: BoolArray) -
     return tuple(stage(problem, name, model.settings, heldout, sound) for name, model in models)
 
 
-def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tuple[Proposal, ...]:
+def _proposals(
+    case: Case, outcome: Outcome, rivals: Mapping[str, Mapping[str, tuple[Effect, ...]]]
+) -> tuple[Proposal, ...]:
     if not case.measured.has_poses:  # nor would a proposed pose be measured
         return ()
     region = case.study.workspace.region if case.study.workspace else None
-    by_key = {effect.key: effect for effect in case.candidates}
     problem = replace(outcome.searcher.problem, measured=case.measured)
     answer = []
-    for finding in findings:
-        key = finding.effect.key
+    for key, of_finding in rivals.items():
         rest = without(outcome.found, key)
-        for rival in finding.rivals[:2]:  # the best
-            swapped = outcome.searcher.fit([*rest, by_key[rival]], outcome.fit)
+        for name, together in [*of_finding.items()][:2]:  # the best
+            swapped = outcome.searcher.fit([*rest, *together], outcome.fit)
             pair = (outcome.fit.settings, swapped.settings)
-            answer.append(propose(problem, region, *pair, (key, rival)))
+            answer.append(propose(problem, region, *pair, (key, name)))
     return tuple(answer)
 
 

@@ -63,7 +63,7 @@ class Finding:
     parameters : mapping of str to Estimate
         Its numbers.
     rivals : tuple of str
-        Effects that this data cannot tell from it.
+        Effects that this data cannot tell from it; several together are joined by ``and``.
     heldout_gain, heldout_gain_std : float
         Share of the held-out mean square that goes when it is added to the others, and how far
         that is in doubt.

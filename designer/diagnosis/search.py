@@ -10,7 +10,7 @@ import numpy as np
 
 from designer.arrays import BoolArray
 from designer.diagnosis.drift import beside_drift
-from designer.diagnosis.fit import Fit, Reach, fit, huber, in_reach
+from designer.diagnosis.fit import Fit, Reach, fit, huber, in_reach, with_places
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import SIGNIFICANCE, folds
 from designer.effects.effect import Effect
@@ -25,6 +25,10 @@ _REACH = 0.25
 of a fit to some tens of per cent."""
 _FEWEST = 3
 """Candidates that are fitted, whatever they promise: a report shows them."""
+_MOST_TOGETHER = 3
+"""Cables whose effects are tried together: what is off with more of them has a cause in common."""
+_ACTS = 3.3
+"""Standard deviations from doing nothing that one number in a thousand gets to by chance."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -143,6 +147,17 @@ def without(effects: Sequence[Effect], *keys: str) -> list[Effect]:
 
 def _best_variance(trials: Sequence[EffectTrial]) -> float:
     return min((t.fit.variance for t in trials), default=1.0)
+
+
+def _acting_cables(effect: Effect, model: Fit) -> list[int]:
+    """Return the cables, from 1, whose own numbers of an effect do something for sure."""
+    (setting, at), *_ = (own for own in with_places(model.settings) if own[0].effect is effect)
+    numbers = zip(effect.parameters, model.std[at].tolist(), strict=True)
+    return [
+        cable
+        for cable, (p, std) in enumerate(numbers, start=1)
+        if f"_{cable}_" in p.name and abs(setting.values[p.name] - p.neutral) > _ACTS * std
+    ]
 
 
 @dataclass(eq=False)
@@ -358,7 +373,7 @@ class Searcher:
 
     def rivals(
         self, effects: Sequence[Effect], effect: Effect, present: Fit, steps: Sequence[Step]
-    ) -> list[Effect]:
+    ) -> list[tuple[Effect, ...]]:
         """Return the effects that the data cannot reject in place of one that was found.
 
         Each is fitted from the present model, and from where the first and the last round left
@@ -375,7 +390,7 @@ class Searcher:
         lost = self.fit(rest, present, anew=True)
         gain = lost.loss - present.loss
         least = min(0.5 * gain, gain - 3.0 * RIVAL_MARGIN * scale)
-        answer = []
+        answer: list[tuple[Effect, ...]] = []
         for rival in self.progress.each(f"rivals of {effect.key}", self._others(effects)):
             if effect.is_part_of(rival):  # which can do all that it does
                 continue
@@ -388,19 +403,46 @@ class Searcher:
             swapped = min(fits, key=lambda model: model.loss)
             if not swapped.is_plausible(rival):
                 continue
-            gaps = (
-                swapped.loss - present.loss,
-                self._penalised(swapped) - self._penalised(present),
-            )
-            suits = min(gaps) / scale < RIVAL_MARGIN
+            suits = self._gap(swapped, present) / scale < RIVAL_MARGIN
             if not suits and rival.key in good:
                 gap = self._unseen_loss([*rest, rival], swapped) - self._unseen_loss(
                     effects, present
                 )
                 suits = gap / scale < RIVAL_MARGIN
             if suits:
-                answer.append(rival)
+                answer.append((rival,))
+        for group in self._groups(effect, present):
+            part = f"rivals of {effect.key}: {group[0].id} of several cables"
+            if self.progress.is_over:
+                self.progress.leave_out(part)
+                break
+            self.progress(part)
+            if sum(self._in_reach(rest, rival, lost).gain for rival in group) < least:
+                continue
+            swapped = self.fit([*rest, *group], present, anew=True)
+            suits = self._gap(swapped, present) / scale < RIVAL_MARGIN
+            if suits and all(map(swapped.is_plausible, group)):
+                answer.append(group)
         return answer
+
+    def _groups(self, effect: Effect, present: Fit) -> list[tuple[Effect, ...]]:
+        """Return effects, kind by kind, of the few cables that one for all cables acts on."""
+        acting = _acting_cables(effect, present)
+        if not 2 <= len(acting) <= min(_MOST_TOGETHER, len(effect.parameters) - 1):
+            return []
+        others = [
+            e
+            for e in self._others([s.effect for s in present.settings])
+            if e.cable in acting and e.session == effect.session
+            if not any(effect.id in p.part_of for p in e.parameters)  # which has the same number
+        ]
+        kinds = dict.fromkeys(e.id for e in others)
+        groups = (tuple(e for e in others if e.id == kind) for kind in kinds)
+        return [group for group in groups if len(group) == len(acting)]
+
+    def _gap(self, swapped: Fit, present: Fit) -> float:
+        """Return by how much a model is worse, with a penalty for its parameters or without."""
+        return min(swapped.loss - present.loss, self._penalised(swapped) - self._penalised(present))
 
     def _others(self, effects_found: Sequence[Effect]) -> list[Effect]:
         return without(self.candidates, *(e.key for e in (*effects_found, *self.given)))
