@@ -136,6 +136,8 @@ def fit(
         that an effect was found in alone need not be the one that it has beside another.
     """
     is_used = problem.used(rows)
+    if start:
+        problem.predict.trust_as(start, effects, problem.noise)
     if not effects:
         loss = float(huber(problem.misfit(())[is_used]).sum())
         return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(is_used))
@@ -303,6 +305,7 @@ def in_reach(
         The one that is added.
     """
     is_used = problem.used(rows)
+    problem.predict.trust_as(present.settings, effects, problem.noise)
     others = [s.effect for s in present.settings]
     known = np.empty((int(is_used.sum()), 0))
     if others:

@@ -15,7 +15,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.kept_slopes import KeptSlopes
 from designer.diagnosis.statistics import MAD_TO_STD
-from designer.effects.effect import Readings, Setting, as_built
+from designer.effects.effect import Effect, Readings, Setting, as_built
 from designer.effects.registry import SHIPPED, KnownEffects
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.machine import Machine
@@ -345,6 +345,16 @@ class Predictor:
             return False
         self._known.clear()
         return True
+
+    def trust_as(self, known: Sequence[Setting], effects: Sequence[Effect], noise: Noise) -> None:
+        """Trust readings with effects that were not tried yet as with those of a known model.
+
+        Losses of two models are to be compared, of which one has the other's effects and more.
+        """
+        kind = (noise, *(effect.key for effect in effects))
+        guess = self._guesses.get(kind_of(known, noise))
+        if guess is not None:
+            self._guesses.setdefault(kind, guess)
 
     def _settled(
         self, settings: Sequence[Setting], noise: Noise, *, judges: bool

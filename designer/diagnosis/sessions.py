@@ -128,6 +128,12 @@ class SessionsPredictor(Predictor):
         of_each = [part.distrust(own, noise) for _, part, own in self._acting(settings)]
         return max(length for length, _ in of_each), max(tension for _, tension in of_each)
 
+    def trust_as(self, known: Sequence[Setting], effects: Sequence[Effect], noise: Noise) -> None:
+        """Trust readings of each session as with a known model; see `Predictor`."""
+        for _, part, own in self._acting(known):
+            acting = [e for e in effects if e.session in (None, part.session)]
+            part.trust_as(own, acting, noise)
+
     def trust_anew(self, settings: Sequence[Setting], noise: Noise) -> bool:
         """Judge anew how far readings of each session can be trusted; tell if that changed."""
         changes = [part.trust_anew(own, noise) for _, part, own in self._acting(settings)]
