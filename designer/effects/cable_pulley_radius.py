@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from designer.effects.effect import Effect, Parameter, Readings, Size, Values
+from designer.effects.rebalancing import rebalancing_N
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.physics import pulley
-from designer.statics.geometry import cable_geometry, structure_matrix
+from designer.statics.geometry import cable_geometry
 from designer.units import LENGTH
 
 _SIZE = Size(0.02, bounds=(-2.0, 2.0), plausible=(-0.6, 0.6))
@@ -19,32 +20,22 @@ _SIZE = Size(0.02, bounds=(-2.0, 2.0), plausible=(-0.6, 0.6))
 def _change(
     readings: Readings, values: Values, measured: Measured, *, machine: Machine, cable: int
 ) -> Readings:
-    """Add what a straight cable is longer by over the larger pulley, and turn its pull.
-
-    The robot has one radius for all cables: what the pulley does to the tensions is taken to first
-    order. A cable k that leaves at another slope pulls in another direction c', so that all
-    tensions T change by δT, the least with C δT = -(c' - c) T_k; the columns of C are directions.
-    """
+    """Add what a straight cable is longer by over the larger pulley, and turn its pull."""
     robot = replace(machine.robot, cable_load_direction=None)
     level = cable_geometry(robot, measured.poses)
-    distance, drop = level.horizontal_distance_m, level.drop_m
+    way = level.horizontal_distance_m, level.drop_m
     radii = np.tile(robot.pulley_radius_m, (2, robot.n_cables))
     radii[1, cable - 1] += values["radius_m"]
-    before, after = (pulley.straight_length_m(distance, drop, radius) for radius in radii)
-    slopes = (pulley.straight_slope_rad(distance, drop, radius) for radius in radii)
-    matrix = structure_matrix(robot, level)
-    pulls, turned = (
-        matrix[..., 0::2] * np.cos(slope)[..., None, :]
-        - matrix[..., 1::2] * np.sin(slope)[..., None, :]
-        for slope in slopes
-    )
-    off = np.sum((turned - pulls) * readings.tension_N[..., None, :], axis=-1)
-    balancing = np.linalg.pinv(np.nan_to_num(pulls)) @ off[..., None]
-    return replace(
-        readings,
-        length_m=readings.length_m + (after - before),
-        tension_N=readings.tension_N - balancing[..., 0],
-    )
+    lengths = [pulley.straight_length_m(*way, radius) for radius in radii]
+    start = np.zeros((*level.drop_m.shape, 3))
+    points = [
+        pulley.tangent_point_m(start, level.outward, pulley.straight_slope_rad(*way, r), r)
+        for r in radii
+    ]
+    moves = points[1] - points[0]
+    more_N = rebalancing_N(robot, measured.poses, readings.tension_N, moves)
+    longer_m = lengths[1] - lengths[0]
+    return Readings(readings.length_m + longer_m, readings.tension_N + more_N)
 
 
 EFFECT = Effect(
