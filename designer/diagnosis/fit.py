@@ -15,6 +15,8 @@ from designer.diagnosis.statistics import score_covariances
 from designer.diagnosis.step_time import StepTime, step_time
 from designer.effects.effect import Effect, Setting, Values
 
+_STRAIGHT = 0.1
+"""Of a change, by how much another may miss what slopes foretell: steps with them still do good."""
 _JUMP = 1e3
 """Of the noise and of the median row's change: no slope, but another balance of a fitted pose."""
 HUBER = 3.0
@@ -354,11 +356,29 @@ def _fit_from(
     parameters = [p for effect in effects for p in effect.parameters]
     low, high = np.array([p.bounds for p in parameters]).T
     inside = np.clip(start, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
+    taken: tuple[FloatArray, FloatArray, FloatArray] | None = None
+
+    def misfit(vector: FloatArray) -> FloatArray:
+        return problem.misfit(settings_at(effects, vector))[mask]
+
+    def slopes_at(vector: FloatArray) -> FloatArray:
+        """Return slopes; those taken before, as long as the misfit follows them."""
+        nonlocal taken
+        residual = misfit(vector)
+        if taken is not None and not thorough:
+            place, before, slopes = taken
+            foretold = slopes @ (vector - place)
+            if np.linalg.norm(residual - before - foretold) < _STRAIGHT * np.linalg.norm(foretold):
+                return slopes
+        slopes = jacobian(problem, effects, vector, nearly=not thorough)[mask]
+        taken = vector.copy(), residual, slopes
+        return slopes
+
     for _ in range(5):  # until distrust of readings and times of steps agree with what is left
         answer = least_squares(
-            lambda v: problem.misfit(settings_at(effects, v))[mask],
+            misfit,
             inside,
-            jac=lambda v: jacobian(problem, effects, v, nearly=not thorough)[mask],
+            jac=slopes_at,
             bounds=(low, high),
             x_scale=[p.typical for p in parameters],
             loss="huber",

@@ -363,42 +363,49 @@ class Predictor:
 
         What they add depends on the internal forces in turn, though little.
         """
-        kept = self._kept(settings)
+        kept, sensing = self._kept(settings), self._sensing(settings)
         nothing = Guess(np.zeros_like(kept.measured.readings))
         guess = self._guesses.get(kind_of(settings, noise), nothing)
         # Of two ways to hold a row, where there are two, the first judgement chooses.
         near = None if judges else guess.near
         if near is not None:  # what these values add to it
-            _, displayed, guess = self._displayed(near, settings, guess)
+            _, displayed, guess = _displayed(kept, sensing, near, guess)
         for _ in range(_MOST_TURNS):
             held = kept.balanced(guess, noise, near)
             near = None if judges else held
             before = guess
-            true, displayed, guess = self._displayed(held, settings, before)
+            true, displayed, guess = _displayed(kept, sensing, held, before)
             if judges:
                 guess = guess.with_distrust(kept.measured, displayed, noise)
             if guess.is_near(before, noise):
                 break
         return guess, true, displayed
 
-    def _displayed(
-        self, held: Statics, settings: Sequence[Setting], guess: Guess
-    ) -> tuple[Readings, Readings, Guess]:
-        """Return true and displayed readings of a balance, and the guess that it leads to."""
-        true = true_readings(held)
-        displayed = self._shown(with_stiff_ends(self._kept(settings).machine, held, true), settings)
-        added = np.nan_to_num(displayed.stacked - true.stacked)
-        return true, displayed, replace(guess, added=added, near=held)
-
     def _shown(self, readings: Readings, settings: Sequence[Setting]) -> Readings:
-        kept = self._kept(settings)
-        for setting in self._all(settings):
-            change, more = setting.effect.on_readings, {}
-            if setting.effect.takes_machine:  # as the other effects have it
-                more = {"machine": kept.machine}
-            if change is not None:
-                readings = change(readings, setting.values, kept.measured, **more)
-        return readings
+        return _shown(self._kept(settings), self._sensing(settings), readings)
+
+    def _sensing(self, settings: Sequence[Setting]) -> list[Setting]:
+        """Return the effects that act on readings, in the order in which they do."""
+        return [s for s in self._all(settings) if s.effect.on_readings is not None]
+
+
+def _displayed(
+    kept: Built, sensing: Sequence[Setting], held: Statics, guess: Guess
+) -> tuple[Readings, Readings, Guess]:
+    """Return true and displayed readings of a balance, and the guess that it leads to."""
+    true = true_readings(held)
+    displayed = _shown(kept, sensing, with_stiff_ends(kept.machine, held, true))
+    added = np.nan_to_num(displayed.stacked - true.stacked)
+    return true, displayed, replace(guess, added=added, near=held)
+
+
+def _shown(kept: Built, sensing: Sequence[Setting], readings: Readings) -> Readings:
+    for setting in sensing:
+        assert setting.effect.on_readings is not None
+        # Of a law that takes the machine, as the other effects have it.
+        more = {"machine": kept.machine} if setting.effect.takes_machine else {}
+        readings = setting.effect.on_readings(readings, setting.values, kept.measured, **more)
+    return readings
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -183,6 +183,7 @@ class Searcher:
     given: Sequence[Effect]
     rows: BoolArray
     progress: Pace = field(default_factory=Pace)
+    _unseen: dict[tuple[frozenset[str], str], float] = field(default_factory=dict)
 
     def run(self) -> tuple[tuple[Step, ...], Fit, tuple[Effect, ...]]:
         """Add, exchange and prune until nothing changes, or a set of effects comes again.
@@ -252,13 +253,15 @@ class Searcher:
         clear = [e for e in promised if _chance(promised[e] / _REACH, e, looks) < SIGNIFICANCE]
         near = {e for e in clear if promised[e] >= least}
         first = [e for k, e in enumerate(promised) if k < _FEWEST or e in near or e in earned]
-        trials = self._tried(effects, first, present, part, looks)
+        # What nothing is expected of is only shown: it is not looked for in far valleys.
+        hopeful = {*clear, *earned}
+        trials = self._tried(effects, first, present, part, looks, hopeful)
         trials = self._validated(effects, present, trials, looks)
         rest = without([*promised], *(e.key for e in first))
         if not (self.progress.is_over or any(trial.may_be_added for trial in trials)):
             further = [e for e in rest if e in clear]
             if further:
-                more = self._tried(effects, further, present, f"{part}, further", looks)
+                more = self._tried(effects, further, present, f"{part}, further", looks, hopeful)
                 trials = self._validated(effects, present, [*trials, *more], looks)
                 rest = without(rest, *(e.key for e in further))
         return trials, {e.key: promised[e] for e in rest}
@@ -327,11 +330,12 @@ class Searcher:
         present: Fit,
         part: str,
         looks: int,
+        hopeful: Collection[Effect],
     ) -> list[EffectTrial]:
         """Fit each of the candidates in addition; ``looks`` is how many there are in all."""
         trials = []
         for effect in self.progress.each(part, candidates):
-            model = self.fit([*effects, effect], present, anew=True)
+            model = self.fit([*effects, effect], present, anew=effect in hopeful)
             gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
             chance = _chance(gain, effect, looks)
             trials.append(EffectTrial(effect, model, gain, chance, heldout_gain=float("nan")))
@@ -357,7 +361,7 @@ class Searcher:
                 continue
             tested = self._beside_drift(trial, present, looks)
             if tested.chance < SIGNIFICANCE:
-                gain = self._unseen_loss(effects, trial.fit)
+                gain = self._unseen_loss(effects, present)
                 gain -= self._unseen_loss([*effects, trial.effect], trial.fit)
                 tested = replace(tested, heldout_gain=gain / trial.fit.variance)
             answer.append(tested)
@@ -448,13 +452,19 @@ class Searcher:
         return without(self.candidates, *(e.key for e in (*effects_found, *self.given)))
 
     def _unseen_loss(self, effects_found: Sequence[Effect], start: Fit) -> float:
-        """Return the loss over each part of the rows, fitted to the other parts."""
+        """Return the loss over each part of the rows, fitted to the other parts.
+
+        Remembered by the effects, and by the loss of the start, which tells in which valley it is.
+        """
         effects = self._sorted([*self.given, *effects_found])
-        loss = 0.0
-        for part in folds(self.rows):
-            model = fit(self.problem, effects, self.rows & ~part, start.settings)
-            loss += float(huber(self.problem.misfit(model.settings)[part]).sum())
-        return loss
+        key = frozenset(effect.key for effect in effects), f"{start.loss:.3g}"
+        if key not in self._unseen:
+            loss = 0.0
+            for part in folds(self.rows):
+                model = fit(self.problem, effects, self.rows & ~part, start.settings)
+                loss += float(huber(self.problem.misfit(model.settings)[part]).sum())
+            self._unseen[key] = loss
+        return self._unseen[key]
 
     def _exchanged(
         self, effects: list[Effect], start: Fit, outsiders: Sequence[Effect]
@@ -498,6 +508,8 @@ class Searcher:
 
     def _pruned(self, effects: list[Effect]) -> list[Effect]:
         """Leave out what the others have made superfluous."""
+        if len(effects) == 1:
+            return effects
         present = self.fit(effects)
         for effect in list(effects):
             if len(effects) == 1:
