@@ -16,13 +16,15 @@ _SIZE = Size(2e-3, bounds=(-0.5, 0.5), plausible=(-0.1, 0.1))
 
 def direction_of(length_m: FloatArray) -> FloatArray:
     """Return how each cable moved last (n_rows, n_cables): 1 out, -1 in, 0 before it moves."""
-    known_m = np.array(length_m)
-    answer = np.zeros(length_m.shape)
-    for row in range(1, len(length_m)):
-        known_m[row] = np.where(np.isnan(known_m[row]), known_m[row - 1], known_m[row])
-        sign = np.nan_to_num(np.sign(known_m[row] - known_m[row - 1]))
-        answer[row] = np.where(sign == 0.0, answer[row - 1], sign)
-    return answer
+    known_m = _last_known(length_m)
+    sign = np.sign(np.diff(known_m, axis=0, prepend=known_m[:1]))
+    return np.nan_to_num(_last_known(np.where(sign == 0.0, np.nan, sign)))
+
+
+def _last_known(values: FloatArray) -> FloatArray:
+    """Return values (n_rows, n_columns), those before in their columns in the place of NaN."""
+    rows = np.where(np.isnan(values), 0, np.arange(len(values))[:, None])
+    return np.take_along_axis(values, np.maximum.accumulate(rows, axis=0), axis=0)
 
 
 def dragged_m(length_m: FloatArray, play_m: FloatArray) -> FloatArray:

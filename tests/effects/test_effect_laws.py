@@ -372,7 +372,7 @@ def test_pulleys_turn_the_pulls_of_single_cables_as_those_of_all(machine, measur
     ],
 )
 def test_tensions_over_a_changed_pulley_do_the_work_of_the_lengths(machine, measured, name, values):
-    """A cable pulls against the slope of its length in the position: T · dL is the weight's work."""
+    """A cable pulls along the slope of its length in the position: T · dL is the weight's work."""
     with_pulleys = machine_with(machine, "pulley_radius", radius_m=0.2)
     with_pulleys = replace(with_pulleys, cable=Cable(0.01, 1e-4, 1e9, 12e3))  # straight
     effect = effect_of(with_pulleys, name, cable=2)
@@ -389,7 +389,8 @@ def test_tensions_over_a_changed_pulley_do_the_work_of_the_lengths(machine, meas
     )
     weight = np.array([0.0, 0.0, -150.0 * STANDARD_GRAVITY_M_PER_S2])
     pulls = np.moveaxis(slopes / 2e-4, 0, -2)  # (before and after, row, axis, cable)
-    before_N, after_N = np.linalg.solve(pulls, np.broadcast_to(weight, (2, 3, 3))[..., None])[..., 0]
+    loads = np.broadcast_to(weight[:, None], (2, 3, 3, 1))
+    before_N, after_N = np.linalg.solve(pulls, loads)[..., 0]
     change_N = np.subtract(shown(np.zeros(3))[1].tension_N, shown(np.zeros(3))[0].tension_N)
     assert np.abs(change_N).max() > 1.0
     assert change_N == pytest.approx(after_N - before_N, rel=5e-3, abs=5e-3)
