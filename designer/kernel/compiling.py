@@ -23,6 +23,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 # these copies agree, and with them fresh code and kept code, one processor and another.
 _OPTIONS: dict[str, Any] = {"error_model": "numpy"}
 _CALLED_BY_KERNELS = {**_OPTIONS, "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
+_CALLED_FROM_PYTHON = {**_OPTIONS, "no_cfunc_wrapper": True, "nogil": True}
 
 _LONGEST_COMPILING_S = 300.0
 
@@ -39,9 +40,14 @@ def inner(function: Function) -> Function:
     return compiled
 
 
+def shared(function: Function) -> Function:
+    """Compile what several kernels call as `inner` does, and keep it on disk."""
+    return _kept(inner(function))
+
+
 def kernel(function: Function) -> Function:
-    """Compile a loop over poses or boxes; releases the interpreter lock and is cached on disk."""
-    compiled: Function = numba.njit(nogil=True, **_OPTIONS)(function)
+    """Compile a loop over poses or boxes; releases the interpreter lock and is kept on disk."""
+    compiled: Function = numba.njit(**_CALLED_FROM_PYTHON)(function)
     return _kept(compiled)
 
 
