@@ -27,10 +27,10 @@ def test_two_exit_points_are_told_from_offsets_of_lengths_by_poses_all_over(
     robot = replace(YARD3, box_m=box_m)
     make(robot, {"length_offset": TWO_LENGTHS_OFF}, rows=60, seed=31).write(tmp_path)
     study = read_study(tmp_path / "config.yaml")
-    found = diagnose_study(study, read_measured(study))
-    (finding,) = found.findings
+    diagnosis = diagnose_study(study, read_measured(study))
+    (finding,) = diagnosis.findings
     assert finding.effect.id == "length_offset"
     assert (TOGETHER not in finding.rivals) is is_told
     assert not any("winch_scale" in rival for rival in finding.rivals)  # which has offsets as well
-    told_apart = {proposal.rival for proposal in found.proposals}
+    told_apart = {proposal.rival for proposal in diagnosis.proposals}
     assert told_apart <= set(finding.rivals)

@@ -270,6 +270,17 @@ def test_a_small_machine_may_have_small_spools(machine, size_m, gain_per_m, beli
     assert gain.is_plausible(gain_per_m) is believed
 
 
+@pytest.mark.parametrize(
+    ("size_m", "radius_m", "believed"),
+    [(4.5, 0.0036, True), (4.5, 0.001, False), (50.0, 0.006, True), (50.0, 0.0036, False)],
+)
+def test_a_small_machine_may_have_small_pulleys(machine, size_m, radius_m, believed):
+    exit_points_m = machine.robot.exit_points_m * size_m / frame_size_m(machine)
+    robot = replace(machine.robot, exit_points_m=exit_points_m)
+    (radius,) = effect_of(Machine(robot, CABLE), "pulley_radius").parameters
+    assert radius.is_plausible(radius_m) is believed
+
+
 def poses_with(machine: Machine, poses: Poses, name: str, **values: float) -> Poses:
     effect = effect_of(machine, name)
     assert effect.on_poses is not None
@@ -384,8 +395,8 @@ def test_tensions_over_a_changed_pulley_do_the_work_of_the_lengths(machine, meas
 
     steps_m = 1e-4 * np.eye(3)
     slopes = np.subtract(
-        [[one.length_m for one in shown(step)] for step in steps_m],
-        [[one.length_m for one in shown(-step)] for step in steps_m],
+        [[readings.length_m for readings in shown(step)] for step in steps_m],
+        [[readings.length_m for readings in shown(-step)] for step in steps_m],
     )
     weight = np.array([0.0, 0.0, -150.0 * STANDARD_GRAVITY_M_PER_S2])
     pulls = np.moveaxis(slopes / 2e-4, 0, -2)  # (before and after, row, axis, cable)
