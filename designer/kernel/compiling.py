@@ -14,6 +14,8 @@ import llvmlite.binding
 import numba
 from filelock import FileLock
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 from platformdirs import user_cache_path
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -22,10 +24,48 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 # copy that a process loads serves all. Only where every operation is rounded as it is written do
 # these copies agree, and with them fresh code and kept code, one processor and another.
 _OPTIONS: dict[str, Any] = {"error_model": "numpy"}
-_CALLED_BY_KERNELS = {**_OPTIONS, "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
 _CALLED_FROM_PYTHON = {**_OPTIONS, "no_cfunc_wrapper": True, "nogil": True}
 
 _LONGEST_COMPILING_S = 300.0
+
+
+class _Inner(JITCodeLibrary):  # type: ignore[misc]
+    """What kernels alone call: linked into each as it was lowered, and optimised there.
+
+    Machine code of its own would never run. It has therefore no place for its environment either,
+    which Numba's functions need to print and to raise errors with values: these do neither.
+    """
+
+    @property
+    def codegen(self) -> _Inner:
+        return self
+
+    def set_env(self, name: str, environment: object) -> None:
+        pass
+
+    def get_pointer_to_function(self, name: str) -> int:
+        return 0
+
+    def _optimize_final_module(self) -> None:
+        pass
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._verify_declare_only_symbols()
+        self._finalized = True
+
+
+class _InnerCompiler(Compiler):  # type: ignore[misc]
+    def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
+        super().__init__(typing, target, library or _Inner(target.codegen(), "inner"), *rest)
+
+
+_CALLED_BY_KERNELS = {
+    **_OPTIONS,
+    "no_cfunc_wrapper": True,
+    "no_cpython_wrapper": True,
+    "pipeline_class": _InnerCompiler,
+}
 
 
 def element(function: Function) -> Function:
@@ -38,11 +78,6 @@ def inner(function: Function) -> Function:
     """Compile what kernels alone call, not inlined; it has no entry for a call from Python."""
     compiled: Function = numba.njit(**_CALLED_BY_KERNELS)(function)
     return compiled
-
-
-def shared(function: Function) -> Function:
-    """Compile what several kernels call as `inner` does, and keep it on disk."""
-    return _kept(inner(function))
 
 
 def kernel(function: Function) -> Function:

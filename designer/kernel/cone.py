@@ -32,7 +32,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray, VerdictArray
 from designer.kernel.answer import NOT_CONVERGED, NOT_FOUND, OUTSIDE_HULL, RANK_DEFICIENT
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import inner, kernel, shared
+from designer.kernel.compiling import inner, kernel
 from designer.kernel.linear import copy
 from designer.kernel.pose import (
     LEAST,
@@ -158,7 +158,7 @@ def _set_rays(pose: Pose, cone: Cone) -> bool:
     return 0.0 < _normalise(cone.load) < np.inf
 
 
-@shared
+@inner
 def _along(a: FloatArray, b: FloatArray) -> float:
     total = 0.0
     for q in range(a.size):
@@ -203,7 +203,7 @@ def _clear(vector: FloatArray, basis: FloatArray, count: int) -> float:
     return math.sqrt(_along(vector, vector))
 
 
-@shared
+@inner
 def _reach(cone: Cone, n_rays: int) -> bool:
     """Find the point of the first rays' cone that is nearest to the load; False if that fails."""
     rays, share, used = cone.rays, cone.share, cone.used
@@ -227,7 +227,7 @@ def _reach(cone: Cone, n_rays: int) -> bool:
     return False
 
 
-@shared
+@inner
 def _settle(cone: Cone, count: int) -> int:
     """Go toward the nearest point of the rays in use, and drop those that would have to push.
 

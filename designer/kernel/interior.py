@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.kernel.compiling import inner, shared
+from designer.kernel.compiling import inner
 from designer.kernel.linear import solve_small
 from designer.kernel.pose import (
     COUPLING,
@@ -131,7 +131,7 @@ def pull_straight(pose: Pose, ask: Ask, s: float) -> None:
         c[P, i] = max(y, _START_PULL / c[UNIT, i]) * c[UNIT, i]
 
 
-@shared
+@inner
 def climb(pose: Pose, ask: Ask, s: float, keep: float, scratch: Scratch) -> tuple[float, float]:
     """Start from the pulls in `pose` and a guess of s; return s and how far it is from optimal.
 
@@ -168,7 +168,7 @@ def climb(pose: Pose, ask: Ask, s: float, keep: float, scratch: Scratch) -> tupl
     return s, gap
 
 
-@shared
+@inner
 def _balance(pose: Pose, ask: Ask, s: float, scratch: Scratch) -> float:
     """Fill what is left of the balance and its slopes; return the largest entry."""
     c = pose.cables

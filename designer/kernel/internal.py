@@ -24,7 +24,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, inner, kernel, shared
+from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.lanes import (
     POSE_ROWS,
     STEP,
@@ -238,7 +238,7 @@ def _stiffen(stiffer: FloatArray, slopes: FloatArray, cables: FloatArray) -> Non
             stiffer[j] = max(stiffer[j] * (1.0 + min(max(back, -0.5), 1.0)), 1.0)
 
 
-@shared
+@inner
 def _rest(slopes: FloatArray, cables: FloatArray, scale: FloatArray, j: int) -> float:
     """Return what is left of a balance; cables close to rounding after `linearise`."""
     n = cables.shape[0]

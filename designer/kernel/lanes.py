@@ -10,7 +10,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import FORCE_X, FORCE_Z, LENGTH
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import inner, shared
+from designer.kernel.compiling import inner
 from designer.kernel.linear import copy
 from designer.kernel.table import (
     L_0,
@@ -58,7 +58,7 @@ def lanes_of(indices: IntArray, first: int) -> IntArray:
     return lane
 
 
-@shared
+@inner
 def place(cables: FloatArray, poses: FloatArray, situation: Situation, lane: IntArray) -> None:
     """Fill the geometry of one block, and the load to be balanced.
 
@@ -83,7 +83,7 @@ def put_cables(cables: FloatArray, figures: CableFigures, lane: IntArray) -> Non
             put_cable(cables[i], j, figures, lane[j], i)
 
 
-@shared
+@inner
 def linearise(cables: FloatArray) -> None:
     """Condense each cable's length: pull and top tension as linear functions of the step in p."""
     for i in range(cables.shape[0]):
@@ -143,7 +143,7 @@ def approach(poses: FloatArray, gently: bool) -> None:
         poses[STEP, j] = abs(c - old) / (abs(c) + 1e-300)
 
 
-@shared
+@inner
 def advance(cables: FloatArray, A: FloatArray, poses: FloatArray) -> None:
     """Apply the Newton step, each p within a factor of five, and note the largest relative step."""
     n = cables.shape[0]

@@ -22,7 +22,7 @@ from designer.kernel.answer import (
     write_pose,
 )
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, inner, shared
+from designer.kernel.compiling import element, inner
 from designer.kernel.least_pull import least_pull
 from designer.kernel.table import (
     CHORD,
@@ -128,7 +128,7 @@ def new_pose(situation: Situation, figures: CableFigures) -> Pose:
     return Pose(cables, situation.rows, np.zeros(6), np.zeros(6), np.ones(3), least_pulls)
 
 
-@shared
+@inner
 def place(pose: Pose, situation: Situation, figures: CableFigures, at: int) -> None:
     """Fill cables, geometry and load."""
     c, load, scale = pose.cables, pose.load, pose.scale
@@ -238,7 +238,7 @@ def settled_length(c: FloatArray, i: int, p: float) -> float:
     return float(length)
 
 
-@shared
+@inner
 def bend(pose: Pose) -> None:
     """Close each cable at its present pull; first and second slopes along the closure."""
     c = pose.cables
@@ -339,7 +339,7 @@ def _measure(pose: Pose, c: float) -> tuple[float, float, float, float]:
     return closure, apart, error, overload
 
 
-@shared
+@inner
 def store(
     out: Answers, at: int, pose: Pose, c: float, gap: float, straight_c: float, sizing: bool
 ) -> int:

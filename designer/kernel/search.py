@@ -27,7 +27,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.kernel.answer import FORCE_X, LOAD_FACTOR, NO_FINITE_CABLE, SOLVED, WEIGHT, Answers
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, inner, kernel, shared
+from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.interior import START_OF_STRAIGHT, climb, new_scratch, pull_straight
 from designer.kernel.linear import copy, solve_small
 from designer.kernel.pose import (
@@ -176,7 +176,7 @@ def _copy_answer(
     copy(pose, to_pose)
 
 
-@shared
+@inner
 def _begin(
     pose: Pose, ask: Ask, straight_c: float, attempt: int, state: np.uint64
 ) -> tuple[float, np.uint64]:
@@ -325,7 +325,7 @@ def _lift_and_top(c: FloatArray, i: int, p: float) -> tuple[float, float]:
     return v, t
 
 
-@shared
+@inner
 def _range(pose: Pose, i: int) -> tuple[float, float]:
     """Return pulls between which lie all those that the strength bears.
 

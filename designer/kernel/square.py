@@ -27,7 +27,7 @@ from designer.kernel.answer import (
     write_pose,
 )
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, inner, kernel, shared
+from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.lanes import (
     CLOSURE,
     GOAL,
@@ -163,7 +163,7 @@ def _solve_block(
                 break
 
 
-@shared
+@inner
 def evaluate(cables: FloatArray) -> None:
     """Put the true pull, top tension and closure error of the state into the cable rows."""
     for i in range(cables.shape[0]):
@@ -178,7 +178,7 @@ def evaluate(cables: FloatArray) -> None:
             row[L_0, j] = abs(F / F_l) if t > 0.0 else np.inf
 
 
-@shared
+@inner
 def check(poses: FloatArray, cables: FloatArray, rows: IntArray) -> None:
     """Compute the residuals of closure and of the platform's balance, and the worst overload.
 
@@ -238,7 +238,7 @@ def _size_of_force(poses: FloatArray, j: int) -> float:
     return float(abs(poses[LOAD, j]) + abs(poses[LOAD + 1, j]) + abs(poses[LOAD + 2, j]))
 
 
-@shared
+@inner
 def _store(
     out: Answers, cables: FloatArray, poses: FloatArray, lane: IntArray, sizing: bool
 ) -> None:

@@ -18,7 +18,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import kernel, shared
+from designer.kernel.compiling import inner, kernel
 from designer.kernel.lanes import POSE_ROWS, assemble, lanes_of, normal_equations, place, put_cables
 from designer.kernel.linear import solve_lanes
 from designer.kernel.table import CHORD, KAPPA, LANE_ROWS, LANES, SHARE, X2, D, L, P
@@ -89,7 +89,7 @@ def solve_taut_poses(
                 out[first + j, i, DISTANCE] = X
 
 
-@shared
+@inner
 def _close(row: FloatArray) -> None:
     """Solve a cable for its length at the given pulls.
 

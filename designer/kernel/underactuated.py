@@ -21,7 +21,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import LENGTH
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import inner, kernel, shared
+from designer.kernel.compiling import inner, kernel
 from designer.kernel.lanes import (
     GOAL,
     LOAD,
@@ -128,7 +128,7 @@ def solve_underactuated_poses(
                     told[STEP_LEFT] = abs(row[L_0, j]) / row[L, j]
 
 
-@shared
+@inner
 def _start(
     cables: FloatArray,
     slopes: FloatArray,
@@ -183,7 +183,7 @@ def _left2(slopes: FloatArray, n: int, m: int, j: int) -> float:
     return residual
 
 
-@shared
+@inner
 def _set_normal(
     normal: FloatArray, slopes: FloatArray, cables: FloatArray, poses: FloatArray, m: int
 ) -> None:
