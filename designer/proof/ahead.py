@@ -1,4 +1,4 @@
-"""The proof's machine code, made in a second process while a first run still searches.
+"""Machine code of the proof and of refusals, made in a second process while a first run searches.
 
 Compiling holds Python's lock, so a thread would gain nothing.
 """
@@ -10,9 +10,11 @@ import subprocess
 import sys
 
 from designer.arrays import frozen_array
+from designer.kernel.batch import refuse_batch
+from designer.kernel.calling import situation_of
 from designer.model.cable import Cable
 from designer.model.prism import Prism
-from designer.model.robot import Platform, Robot
+from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.proof.cover import covers_of
 from designer.proof.encloser import Encloser
@@ -31,11 +33,13 @@ def compile_apart() -> subprocess.Popen[bytes]:
 
 
 def compile_here() -> None:
-    """Compile what bounds a box, or load it: one code for all robots."""
+    """Compile what bounds a box and what refuses a pose, or load it: one code for all robots."""
     exits = frozen_array([[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [2.0, 4.0, 0.0]])
     box = Prism.box((2.0, 2.1), (1.0, 1.1), (-2.0, -1.9))
     (cover,) = covers_of(Space(box, Orientations()))
-    Encloser(Robot(exits, Platform(1.0)), Cable(0.01, 0.4, 6e6, 1e4), cover).compile()
+    robot = Robot(exits, Platform(1.0))
+    Encloser(robot, Cable(0.01, 0.4, 6e6, 1e4), cover).compile()
+    refuse_batch(situation_of(robot, Poses.at([2.0, 1.0, 1.0]).flat, robot.exit_points_m), 0.0)
 
 
 if __name__ == "__main__":
