@@ -10,6 +10,7 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.edge import steepness
+from designer.diagnosis.look_ahead import View
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import score_covariances
 from designer.diagnosis.step_time import StepTime, step_time
@@ -275,10 +276,14 @@ def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> Floa
 
 
 class Reach(NamedTuple):
-    """The robust loss after one linear step, without one more effect in the model and with it."""
+    """The robust loss after one linear step, without one more effect in the model and with it.
+
+    With it from the best of its starts, of which there are views.
+    """
 
     without: float
     loss: float
+    views: tuple[View, ...] = ()
 
     @property
     def gain(self) -> float:
@@ -312,7 +317,7 @@ def in_reach(
     known = np.empty((int(is_used.sum()), 0))
     if others:
         known = jacobian(problem, others, present.vector, nearly=True)[is_used]
-    losses = []
+    losses, views = [], []
     start = _starts(problem, effects, present.settings, [effect])
     start = start or [starting_vector(effects, present.settings, {})]
     for vector in (starting_vector(effects, present.settings, effect.neutral), *start):
@@ -321,8 +326,9 @@ def in_reach(
         slopes = _slopes(problem, settings, own)[is_used]
         residual = problem.misfit(settings)[is_used]
         losses.append(_linear_step(residual, np.hstack([known, slopes]))[0])
+        views.append(View(own, residual, slopes))
     residual = problem.misfit(present.settings)[is_used]
-    return Reach(_linear_step(residual, known)[0], min(losses))
+    return Reach(_linear_step(residual, known)[0], min(losses), tuple(views))
 
 
 def _linear_step(residual: FloatArray, slopes: FloatArray) -> tuple[float, FloatArray]:

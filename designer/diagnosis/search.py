@@ -10,10 +10,20 @@ import numpy as np
 
 from designer.arrays import BoolArray
 from designer.diagnosis.drift import beside_drift
-from designer.diagnosis.fit import Fit, Reach, fit, huber, in_reach, with_places
+from designer.diagnosis.fit import (
+    HUBER,
+    Fit,
+    Reach,
+    fit,
+    huber,
+    in_reach,
+    jacobian,
+    with_places,
+)
+from designer.diagnosis.look_ahead import LinearModel, View, best_sets
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import SIGNIFICANCE, folds
-from designer.effects.effect import Effect
+from designer.effects.effect import Effect, Setting
 from designer.progress import Pace
 
 RIVAL_MARGIN = 9.0
@@ -25,6 +35,8 @@ _REACH = 0.25
 of a fit to some tens of per cent."""
 _FEWEST = 3
 """Candidates that are fitted, whatever they promise: a report shows them."""
+_MOST_SETS = 6
+"""Sets of effects that are fitted of those that promise most."""
 _MOST_TOGETHER = 3
 """Cables whose effects are tried together: what is off with more of them has a cause in common."""
 _ACTS = 3.3
@@ -43,7 +55,7 @@ class EffectTrial:
         The model with it.
     gain : float
         What it takes off the robust loss over the rows for fitting, in units of the variance left,
-        and for as many independent readings as there are; beside a step, where one hides it.
+        and for as many independent readings as there are.
     chance : float
         Probability of such a gain by chance in any of the candidates of this round.
     heldout_gain : float
@@ -184,6 +196,7 @@ class Searcher:
     rows: BoolArray
     progress: Pace = field(default_factory=Pace)
     _unseen: dict[tuple[frozenset[str], str], float] = field(default_factory=dict)
+    _views: tuple[View, ...] = ()  # of all candidates, without any other
 
     def run(self) -> tuple[tuple[Step, ...], Fit, tuple[Effect, ...]]:
         """Add, exchange and prune until nothing changes, or a set of effects comes again.
@@ -192,7 +205,7 @@ class Searcher:
         """
         effects: list[Effect] = []
         steps: list[Step] = []
-        present = self.fit(effects)
+        present = alone = self.fit(effects)
         visited: list[set[Effect]] = []
         while set(effects) not in visited:
             visited.append(set(effects))
@@ -200,7 +213,6 @@ class Searcher:
             earned = [t.effect for step in steps for t in step.trials if t.earns_its_place]
             part = f"round {len(steps) + 1}"
             trials, passed_over = self.trials(effects, present, part, earned)
-            trials = self._beside_a_step(effects, trials, part)
             is_over = self.progress.is_over
             best = [] if is_over else _best(trials)
             # More that a machine lacks at once are not to be told apart by one log.
@@ -210,12 +222,72 @@ class Searcher:
             if trials:
                 added = best[fewest].effect if best else None
                 steps.append(Step(tuple(trials), added, not is_over, passed_over))
-            if not extended:
-                break
-            effects = extended[fewest]
-            present = self.fit(effects, best[fewest].fit)
+            if extended:
+                effects = extended[fewest]
+                present = self.fit(effects, best[fewest].fit)
+            if extended or not effects:  # else it was done when they were found
+                effects, present = self._looked_ahead(effects, present, alone)
         effects = self._predicting(self._reconsidered(effects, present, steps), present)
         return tuple(steps), self.fit(effects, present, thorough=True), tuple(effects)
+
+    def _looked_ahead(
+        self, effects: list[Effect], present: Fit, alone: Fit
+    ) -> tuple[list[Effect], Fit]:
+        """Return other effects, no more than these or two, that together do better by a margin.
+
+        Not where these leave nothing and have few numbers. Of those about as good, errors of
+        setting up come before physics, and few numbers before many.
+        """
+        excess = present.loss - present.n_data
+        is_explained = excess < _ACTS * math.sqrt(2.0 * present.n_data)
+        has_few_numbers = sum(map(_penalty, effects)) < RIVAL_MARGIN
+        if is_explained and has_few_numbers:
+            return effects, present
+        better = self._better_sets(effects, present, alone)
+        if not better:
+            return effects, present
+        best = min(better, key=self._penalised)
+        least = self._penalised(best) + RIVAL_MARGIN * best.variance
+
+        def simplicity(model: Fit) -> tuple[int, int]:
+            return sum(s.effect.cause == "physics" for s in model.settings), len(model.vector)
+
+        model = min((m for m in better if self._penalised(m) <= least), key=simplicity)
+        together = [s.effect for s in model.settings if s.effect not in self.given]
+        if self._unseen_loss(together, model) >= self._unseen_loss(effects, present):
+            return effects, present
+        kept = self._pruned(together)
+        return kept, self.fit(kept, model)
+
+    def _better_sets(self, effects: Sequence[Effect], present: Fit, alone: Fit) -> list[Fit]:
+        """Return fits of the sets that promise most, where they are better than the present one."""
+        part = f"instead of {' and '.join(effect.key for effect in effects) or 'nothing'}"
+        better = []
+        for promise in self._promising_sets(effects, present, alone):
+            together = [setting.effect for setting in promise]
+            if self.progress.is_over:
+                break
+            self.progress(f"{part}: {' and '.join(effect.key for effect in together)}")
+            every = self._sorted([*self.given, *together])
+            model = fit(self.problem, every, self.rows, (*alone.settings, *promise), anew=True)
+            margin = RIVAL_MARGIN * max(model.inflation[effect.key] for effect in together)
+            gain = (self._penalised(present) - self._penalised(model)) / model.variance
+            if gain > margin and all(map(model.is_plausible, together)):
+                better.append(model)
+        return better
+
+    def _promising_sets(
+        self, effects: Sequence[Effect], present: Fit, alone: Fit
+    ) -> list[tuple[Setting, ...]]:
+        """Return the few sets of candidates that promise most, and more than the present one."""
+        is_used = self.problem.used(self.rows)
+        off, now = (self.problem.misfit(model.settings)[is_used] for model in (alone, present))
+        known = np.empty((len(off), 0))
+        if self.given:
+            known = jacobian(self.problem, self.given, alone.vector, nearly=True)[is_used]
+        weight = HUBER / np.maximum(np.abs(now), HUBER)
+        linear = LinearModel(self._views, off, known, weight)
+        return best_sets(linear, _penalty, effects, max(2, len(effects)), _MOST_SETS)
 
     def _extended(
         self, effects: Sequence[Effect], trial: EffectTrial, trials: Sequence[EffectTrial]
@@ -266,43 +338,6 @@ class Searcher:
                 rest = without(rest, *(e.key for e in further))
         return trials, {e.key: promised[e] for e in rest}
 
-    def _beside_a_step(
-        self, effects: Sequence[Effect], trials: list[EffectTrial], part: str
-    ) -> list[EffectTrial]:
-        """Return the trials, the one that does best beside a step at a time counted beside that.
-
-        Where the best of them does not earn its place: what a step leaves lasts over rows, so that
-        nothing else is sure beside it, nor is the step beside what is constant. Both have to earn
-        their places, each beside the other.
-        """
-        variance = _best_variance(trials)
-        best = max(trials, key=lambda t: t.score(variance), default=None)
-        if best is None or best.may_be_added or self.progress.is_over:
-            return trials
-        others = self._others(effects)
-        pairs: dict[tuple[EffectTrial, Effect], float] = {}
-        for step in (e for e in others if any(p.is_step_time for p in e.parameters)):
-            for trial in (t for t in trials if t.effect is not step):
-                self.progress(f"{part}: {trial.effect.key} beside {step.key}")
-                reach = self._in_reach([*effects, trial.effect], step, trial.fit)
-                pairs[trial, step] = reach.loss / variance + _penalty(trial.effect)
-        if not pairs:
-            return trials
-        trial, step = min(pairs, key=pairs.__getitem__)
-        model = self.fit([*effects, trial.effect, step], trial.fit, anew=True)
-        looks = len(others) * len(pairs)
-        alone = self.fit([*effects, step], model)
-        beside = []
-        for rest, present, effect in ((trial.effect, trial.fit, step), (step, alone, trial.effect)):
-            gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
-            chance = _chance(gain, effect, looks)
-            both = EffectTrial(effect, model, gain, chance, heldout_gain=float("nan"))
-            beside += self._validated([*effects, rest], present, [both], looks)
-        if not all(t.may_be_added for t in beside):
-            return trials
-        told = replace(beside[1], fit=trial.fit)
-        return [told if t is trial else t for t in trials]
-
     def _promised(self, effects: Sequence[Effect], present: Fit, part: str) -> dict[Effect, float]:
         """Return the gain that one linear step promises of each other candidate, best first.
 
@@ -314,6 +349,8 @@ class Searcher:
             is_late = self.progress.is_over
             late = Reach(present.loss, present.loss)
             reaches[effect] = late if is_late else self._in_reach(effects, effect, present)
+        if not effects:
+            self._views = tuple(view for reach in reaches.values() for view in reach.views)
         least = min((reach.loss for reach in reaches.values()), default=0.0)
         variance = max(1.0, least / max(present.n_data - len(present.vector), 1))
         promised = {effect: reach.gain / variance for effect, reach in reaches.items()}
