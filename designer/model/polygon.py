@@ -10,7 +10,7 @@ from designer.arrays import BoolArray, FloatArray, frozen_array
 
 def edges_m(polygon_m: FloatArray) -> FloatArray:
     """Return the way from each corner to the next (n_corners, 2) [m]."""
-    return np.asarray(np.roll(polygon_m, -1, axis=0) - polygon_m)
+    return np.asarray(np.concatenate([polygon_m[1:], polygon_m[:1]]) - polygon_m)
 
 
 def area_m2(polygon_m: FloatArray) -> float:
@@ -50,7 +50,7 @@ def inset_hull_m(points_m: FloatArray, inset_m: float) -> FloatArray:
 def contains(polygon_m: FloatArray, points_m: FloatArray) -> BoolArray:
     """Tell which of the points (..., 2) lie inside or on the boundary."""
     edges = edges_m(polygon_m)
-    least = -1e-12 * np.linalg.norm(edges, axis=1) * np.ptp(polygon_m)
+    least = -1e-12 * np.hypot(*edges.T) * np.ptp(polygon_m)
     x, y = points_m[..., 0], points_m[..., 1]
     inside = np.ones(x.shape, dtype=np.bool_)
     for (u, v), (x_0, y_0), bound in zip(edges, polygon_m, least, strict=True):

@@ -105,9 +105,10 @@ class Prism(region.Region):
     def nearest(self, points_m: FloatArray) -> FloatArray:
         clipped = np.array(points_m, dtype=np.float64)
         clipped[..., 2] = np.clip(points_m[..., 2], *self.z_m)
-        outside = ~self.contains(clipped)
-        plan = clipped[outside, :2]
-        clipped[outside, :2] = polygon.nearest_on_edges_m(self.polygon_m, plan)
+        outside = ~polygon.contains(self.polygon_m, clipped[..., :2])
+        if outside.any():
+            plan = clipped[outside, :2]
+            clipped[outside, :2] = polygon.nearest_on_edges_m(self.polygon_m, plan)
         return clipped
 
     def samples_m(self, count: int, sampling: region.Sampling, seed: int) -> Iterator[FloatArray]:

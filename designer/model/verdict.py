@@ -112,9 +112,12 @@ class Verdict(IntEnum):
         return f"{self.clause[0].upper()}{self.clause[1:]}."
 
 
+_IS_OPEN = np.array([not verdict.is_proved for verdict in Verdict])
+
+
 def are_open(verdicts: VerdictArray) -> BoolArray:
     """Tell which verdicts (...) prove nothing."""
-    return np.isin(verdicts, [verdict for verdict in Verdict if not verdict.is_proved])
+    return _IS_OPEN[verdicts]
 
 
 def hanging_cables(force_z_N: FloatArray, drop_m: FloatArray) -> BoolArray:
