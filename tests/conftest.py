@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from collections import Counter
 from collections.abc import Iterator
@@ -25,10 +26,13 @@ from designer.plugins import examine
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_massless
 
+gc.disable()  # until all tests are collected: they stay, and so does what they need
 # No test asserts an absolute time: a crowded machine is slow, not wrong.
 settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("untimed")
 
+_ANCHORS = [[0.0, 0.0, 0.0], [500.0, 0.0, 0.0], [250.0, 433.01, 0.0]]
+"""Of the paper's robot."""
 TOGETHER = ("tests/report/test_figures_", "tests/report/test_report_")
 """How files begin that share studies which take long to solve: one worker runs them all."""
 
@@ -56,6 +60,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     All cases of a test are in one part, which nothing but its name decides; sets of options are
     tests of their own.
     """
+    gc.freeze()
+    gc.enable()
     part, n_parts = map(int, config.getoption("--part").split("/"))
 
     def is_in(item: pytest.Item) -> bool:
@@ -77,8 +83,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 @pytest.fixture(scope="session")
 def fast_robot() -> Robot:
     """Riehl et al., ICRA 2010, Table I, with 4000 kg."""
-    anchors = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
-    return Robot(frozen_array(anchors), Platform(4000.0))
+    return Robot(frozen_array(_ANCHORS), Platform(4000.0))
 
 
 @pytest.fixture(scope="session")
@@ -124,20 +129,37 @@ def compiles_without_a_word() -> Iterator[None]:
         yield
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection(session: pytest.Session) -> None:
+    """Let the second worker of a run of all tests compile what most of them need.
+
+    The first collects meanwhile, and keeps the files that it has rewritten for the second.
+    """
+    if _compiles(session.config):
+        _size(_ANCHORS)
+
+
 @pytest.fixture(scope="session", autouse=True)
-def compiled_by_one(request: pytest.FixtureRequest, fast_robot: Robot, steel: Material) -> None:
-    """Let the second worker compile the largest kernels, so that no other does so beside it.
+def compiled_by_one(request: pytest.FixtureRequest) -> None:
+    """Let the second worker compile the kernels for more cables, and no other beside it.
 
     The others begin with files that need none: those of most tests.
     """
-    worker = getattr(request.config, "workerinput", {}).get("workerid")
-    if worker == "gw1" and len(request.session.items) > 2000:
-        everywhere = np.random.default_rng(0).uniform([-100, -100, -200], [600, 500, 50], (30, 3))
-        corner = frozen_array([[500.0, 433.01, 0.0]])
-        four = replace(fast_robot, exit_points_m=np.vstack([fast_robot.exit_points_m, corner]))
-        for robot in (fast_robot, four):
-            size_poses(robot, Poses.at(everywhere), steel)
-        solve_massless(four, Poses.at(everywhere))
+    if _compiles(request.config):
+        _size([*_ANCHORS, [500.0, 433.01, 0.0]])
+
+
+def _compiles(config: pytest.Config) -> bool:
+    worker = getattr(config, "workerinput", {}).get("workerid")
+    return worker == "gw1" and config.args == config.getini("testpaths")
+
+
+def _size(anchors_m: list[list[float]]) -> None:
+    robot = Robot(frozen_array(anchors_m), Platform(4000.0))
+    places = np.random.default_rng(0).uniform([-100, -100, -200], [600, 500, 50], (30, 3))
+    size_poses(robot, Poses.at(places), Material(7800.0, 200e9, 180e6))
+    if robot.is_redundant:
+        solve_massless(robot, Poses.at(places))
 
 
 @pytest.fixture

@@ -53,7 +53,7 @@ def test_largest_tension_at_exit_points(tmp_path: Path) -> None:
     assert winch.utilisation == pytest.approx(winch.demand / 2500.0)
 
 
-@pytest.mark.parametrize("lost", [None, 3])
+@pytest.mark.parametrize("lost", [None, pytest.param(3, marks=pytest.mark.slow)])
 def test_largest_tension_of_each_winch(tmp_path: Path, lost: int | None) -> None:
     largest = [np.inf, 2500.0, 400.0]
     study = crane(winches={"tension_max": [None, *largest[1:]], "sheave_efficiency": 0.9})

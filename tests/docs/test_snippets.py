@@ -26,7 +26,7 @@ from designer.io.config.json_schema import study_schema
 
 KNOWN = {"console", "python", "yaml", "html+jinja", "css+jinja", "text", "sh"}
 _COMMAND = re.compile(r"^\$ (.*?)(?:\s+# status (\d))?$")
-_AT_ONCE = {"how-to/plugin.md", "how-to/editor.md", "how-to/effect.md"}
+_AT_ONCE = {"how-to/plugin.md", "how-to/effect.md"}
 _NOT_RUN = {"how-to/window.md"}
 """Opens the window, which has tests of its own."""
 _SELDOM = {

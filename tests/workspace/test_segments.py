@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear, minimize
 
+from designer.kernel.calling import plain
 from designer.kernel.distance import nearest_faces, nearest_pieces
 
 
 def segment_distance_m(a, b, c, d):
     """Return distances (n,) of segments ab and cd (n, 3), and the middles; plain for one."""
-    first, second = (np.stack(ends, axis=-2).reshape(-1, 2, 3) for ends in ((a, b), (c, d)))
+    first, second = (plain(np.stack(ends, axis=-2).reshape(-1, 2, 3)) for ends in ((a, b), (c, d)))
     distance, middle = np.empty(len(first)), np.empty((len(first), 3))
     nearest_pieces(first, second, distance, middle, np.zeros((len(first), 2), dtype=np.int64))
     return distance.reshape(a.shape[:-1]), middle.reshape(a.shape)
@@ -20,8 +21,8 @@ def segment_distance_m(a, b, c, d):
 def triangle_distance_m(a, b, corners):
     """Return the distance of one segment from triangles (..., 3, 3), and the nearest place."""
     distance, place = np.empty(1), np.empty((1, 3))
-    surface = np.ascontiguousarray(corners.reshape(-1, 3, 3))
-    nearest_faces(np.stack([a, b])[None], surface, distance, place, np.zeros(1, dtype=np.int64))
+    surface = plain(corners.reshape(-1, 3, 3))
+    nearest_faces(plain([[a, b]]), surface, distance, place, np.zeros(1, dtype=np.int64))
     return distance[0], place[0]
 
 
