@@ -88,7 +88,7 @@ def straightened_m(machine: Machine, tension_N: FloatArray, span_m: FloatArray) 
     return np.asarray(load**2 * 3.0 * layer / (8.0 * tension_N**2))
 
 
-_STILL = 1e-7
+_STILL = 1e-5
 """Of the noise: far below what the slopes of a fit would show."""
 _ABOUT = (0.7, 2.8)
 """Residual over the distrust within which the latter stays. A new distrust, a power of two, is at

@@ -418,10 +418,11 @@ class Searcher:
         """Return the effects that the data cannot reject in place of one that was found.
 
         Each is fitted from the present model, and from where the first and the last round left
-        it. It stays a rival if the fitted rows suit it about as well, with a penalty for its
-        parameters or without one; or if it predicted unseen rows at least half as well when
-        ``effect`` was added, and predicts them about as well in its place. What at first sight
-        does less than half of what ``effect`` does is not fitted.
+        it, unless a round has fitted it beside the same effects. It stays a rival if the fitted
+        rows suit it about as well, with a penalty for its parameters or without one; or if it
+        predicted unseen rows at least half as well when ``effect`` was added, and predicts them
+        about as well in its place. What at first sight does less than half of what ``effect`` does
+        is not fitted.
         """
         rest = without(effects, effect.key)
         scale = present.variance * present.inflation[effect.key]
@@ -438,9 +439,12 @@ class Searcher:
             if rival.key not in good and self._in_reach(rest, rival, lost).gain < least:
                 continue
             trials = [t.fit for step in steps for t in step.trials if t.effect.key == rival.key]
-            fits = [self.fit([*rest, rival], present, anew=True)]
-            last = dict.fromkeys([*trials[:1], *trials[-1:]])
-            fits += [self.fit([*rest, rival], start) for start in last]
+            with_rest = {e.key for e in (*self.given, *rest, rival)}
+            fits = [m for m in trials if {s.effect.key for s in m.settings} == with_rest]
+            if not fits:
+                last = dict.fromkeys([*trials[:1], *trials[-1:]])
+                fits = [self.fit([*rest, rival], present, anew=True)]
+                fits += [self.fit([*rest, rival], start) for start in last]
             swapped = min(fits, key=lambda model: model.loss)
             if not swapped.is_plausible(rival):
                 continue
