@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import sys
 from collections import Counter
 from collections.abc import Iterator
@@ -27,6 +28,8 @@ from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_massless
 
 gc.disable()  # until all tests are collected: they stay, and so does what they need
+# Workers get it from here. They keep all processors busy: threads of their own would only wait.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 # No test asserts an absolute time: a crowded machine is slow, not wrong.
 settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("untimed")

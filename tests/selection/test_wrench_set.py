@@ -51,7 +51,7 @@ def straight_tension_N(exits_m: np.ndarray, place_m: np.ndarray, load_N: np.ndar
     return float(answer.fun) if answer.status == 0 else np.inf
 
 
-@pytest.mark.cases_by_default(2)
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("n_cables", [3, 4])
 def test_corners_bound_straight_cables(n_cables: int, seed: int) -> None:
