@@ -45,9 +45,10 @@ def dragged_m(length_m: FloatArray, play_m: FloatArray) -> FloatArray:
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
     true_m = readings.length_m
     play_m = per_cable(values, "play_{cable}_m", true_m.shape[1])
-    ahead_m = true_m + 0.5 * play_m * direction_of(true_m)
-    behind_m = dragged_m(true_m, np.abs(play_m))
-    return replace(readings, length_m=np.where(play_m < 0.0, behind_m, ahead_m))
+    read_m = true_m + 0.5 * play_m * direction_of(true_m)
+    is_dragged = play_m < 0.0
+    read_m[:, is_dragged] = dragged_m(true_m[:, is_dragged], -play_m[is_dragged])
+    return replace(readings, length_m=read_m)
 
 
 EFFECT = Effect(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import Literal
 
 import numpy as np
@@ -419,12 +419,18 @@ def pull_of(machine: Machine, measured: Measured, tension_N: FloatArray) -> Pull
     With H the horizontal force, w the weight per length, chord c over X and drop D: the upward
     force at the exit is H D / X + w c / 2, which with H makes the tension there.
     """
-    geometry = cable_geometry(machine.robot, measured.poses)
-    across = np.maximum(geometry.horizontal_distance_m, 1e-9)
-    slope = geometry.drop_m / across
-    half = 0.5 * machine.cables.weight_N_per_m * geometry.chord_m
+    across, slope, half = _chords(machine, measured)
     square, mixed = 1.0 + slope**2, slope * half
     inside = np.maximum(mixed**2 - square * (half**2 - tension_N**2), 0.0)
     level = np.maximum((np.sqrt(inside) - mixed) / square, 0.0)
     drop = 0.5 * machine.cables.weight_N_per_m * slope * across
     return Pull(level, np.maximum(tension_N - drop, 0.0))
+
+
+@lru_cache(maxsize=2)
+def _chords(machine: Machine, measured: Measured) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return X [m], D / X and w c / 2 [N]; kept, as many tensions are asked of one machine."""
+    geometry = cable_geometry(machine.robot, measured.poses)
+    across = np.maximum(geometry.horizontal_distance_m, 1e-9)
+    half = 0.5 * machine.cables.weight_N_per_m * geometry.chord_m
+    return across, geometry.drop_m / across, half
