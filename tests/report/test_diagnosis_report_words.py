@@ -123,3 +123,12 @@ def test_long_logs_are_thinned_and_wild_readings_do_not_flatten() -> None:
 
 def test_neighbouring_rows_are_drawn_together() -> None:
     assert in_runs([3, 7, 8, 9, 12]) == ["3", "7 to 9", "12"]
+
+
+def test_rivals_of_several_effects_are_said_to_stand_together() -> None:
+    assert words.either(["creep"]) == "creep"
+    rivals = ["creep", "winch_zero of cable 1 and winch_zero of cable 3"]
+    assert (
+        words.either(rivals) == "creep or winch_zero of cable 1 and winch_zero of cable 3 together"
+    )
+    assert words.either(["winch_zero", "pose_shift"], "and") == "winch_zero and pose_shift"

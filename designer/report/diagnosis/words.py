@@ -101,6 +101,11 @@ def plain_finding(finding: Finding) -> str:
     return plain(finding.effect, {name: e.value for name, e in finding.parameters.items()})
 
 
+def either(rivals: Iterable[str], last: str = "or") -> str:
+    """Return names of rivals as ``a, b or c and d together``."""
+    return fmt.listing((f"{name} together" if " and " in name else name for name in rivals), last)
+
+
 def rivals_of(group: Sequence[Finding]) -> list[str]:
     """Return the rivals of findings of one kind, each once."""
     return [*dict.fromkeys(rival for finding in group for rival in finding.rivals)]
