@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.load_case import Loaded
 from designer.model.region import Region
 from designer.model.robot import Poses
@@ -59,9 +60,29 @@ def first_failures(case: CaseResult) -> tuple[FirstFailure, ...]:
     if region.is_discrete or loaded.keeps_lengths:
         return ()
     turn = case.verification.worst_place[3:]
-    return tuple(
-        _along(region, loaded, turn, name, along) for name, along in _directions(region, loaded)
+    reach = float(np.ptp(loaded.bare[0].exit_points_m, axis=0).max())
+    border, directions = region.border(), _directions(region, loaded)
+    places = border.samples_m(np.random.default_rng(0), _PER_EDGE, _PER_FACE)
+    places = np.concatenate([border.landmarks_m(), places])
+    leaves = [~region.contains(places + _OUT * reach * along) for _, along in directions]
+    way = np.repeat(np.arange(len(directions)), [mask.sum() for mask in leaves])
+    start = np.concatenate([places[mask] for mask in leaves])
+    along = np.array([along for _, along in directions])[way]
+    distance = _first_distances_m(
+        lambda rows, far: _failure(loaded, start[rows] + far[:, None] * along[rows], turn)[0],
+        way,
+        reach,
     )
+    failures = []
+    for k, (name, direction) in enumerate(directions):
+        rows = np.flatnonzero((way == k) & np.isfinite(distance))
+        far, place, why = np.nan, np.full(3, np.nan), ""
+        if len(rows):
+            nearest = rows[distance[rows].argmin()]
+            far, place = float(distance[nearest]), start[nearest] + distance[nearest] * direction
+            why = _failure(loaded, place[None], turn)[1][0]
+        failures.append(FirstFailure(name, direction, far, place, why, reach))
+    return tuple(failures)
 
 
 def _directions(region: Region, loaded: Loaded) -> list[tuple[str, FloatArray]]:
@@ -78,39 +99,36 @@ def _directions(region: Region, loaded: Loaded) -> list[tuple[str, FloatArray]]:
     return [(name, along / np.linalg.norm(along)) for name, along in axes.items()]
 
 
-def _along(
-    region: Region, loaded: Loaded, turn_rad: FloatArray, name: str, along: FloatArray
-) -> FirstFailure:
-    """March out from the border until the first pose fails, and halve the last step."""
-    reach = float(np.ptp(loaded.bare[0].exit_points_m, axis=0).max())
-    border = region.border()
-    starts = border.samples_m(np.random.default_rng(0), _PER_EDGE, _PER_FACE)
-    starts = np.concatenate([border.landmarks_m(), starts])
-    starts = starts[~region.contains(starts + _OUT * reach * along)]
+def _first_distances_m(
+    fails: Callable[[IntArray, FloatArray], BoolArray], way: IntArray, reach_m: float
+) -> FloatArray:
+    """March out along all ways (n,) of each direction until one fails, and halve the last step.
 
-    def fails(start_m: FloatArray, distance_m: FloatArray) -> BoolArray:
-        return _failure(loaded, start_m + distance_m[:, None] * along, turn_rad)[0]
-
-    before = 0.0
-    for far in reach * (np.arange(1, _TURNS + 1) / _TURNS) ** 2:
-        hit = fails(starts, np.full(len(starts), far))
-        if hit.any():
-            starts = starts[hit]
+    Returns
+    -------
+    array (n,)
+        Where the first of a direction fail [m]; infinite for the others.
+    """
+    low, high = np.zeros(len(way)), np.full(len(way), np.inf)
+    going = np.arange(len(way))
+    for far in reach_m * (np.arange(1, _TURNS + 1) / _TURNS) ** 2:
+        hit = fails(going, np.full(len(going), far))
+        high[going[hit]] = far
+        going = going[~np.isin(way[going], way[going[hit]])]
+        if not len(going):
             break
-        before = far
-    else:
-        return FirstFailure(name, along, np.nan, np.full(3, np.nan), "", reach)
-    low, high = np.full(len(starts), before), np.full(len(starts), far)
-    for _ in range(_HALVES):
-        middle = 0.5 * (low + high)
-        hit = fails(starts, middle)
-        low, high = np.where(hit, low, middle), np.where(hit, middle, high)
-        candidates = low <= high.min()  # what fails farther out for sure is not the first
-        starts, low, high = starts[candidates], low[candidates], high[candidates]
-    nearest = int(high.argmin())
-    place = starts[nearest] + high[nearest] * along
-    why = _failure(loaded, place[None], turn_rad)[1][0]
-    return FirstFailure(name, along, float(high[nearest]), place, why, reach)
+        low[going] = far
+    rows = np.flatnonzero(np.isfinite(high))
+    for _ in range(_HALVES if len(rows) else 0):
+        middle = 0.5 * (low[rows] + high[rows])
+        hit = fails(rows, middle)
+        high[rows[hit]], low[rows[~hit]] = middle[hit], middle[~hit]
+        least = np.full(way.max() + 1, np.inf)
+        np.minimum.at(least, way[rows], high[rows])
+        is_first = low[rows] <= least[way[rows]]
+        high[rows[~is_first]] = np.inf  # what fails farther out for sure is not the first
+        rows = rows[is_first]
+    return high
 
 
 def _failure(

@@ -27,24 +27,31 @@ def inset_hull_m(points_m: FloatArray, inset_m: float) -> FloatArray:
     ValueError
         If the points lie on one line, or nothing is left inside the inset.
     """
-    from scipy.optimize import linprog  # keeps `designer --help` light
-
     try:
         hull = ConvexHull(points_m)
     except QhullError:
         raise ValueError("the points lie on one line, so they span no area") from None
     sides = hull.equations + np.array([0.0, 0.0, inset_m])
-    # Centre and radius of the largest circle inside `normal · x + offset ≤ 0`.
+    inside = points_m[hull.vertices].mean(axis=0)
+    if inset_m > 0.0:
+        inside, radius = _largest_circle(sides)
+        if radius <= 0.0:
+            raise ValueError(f"nothing is left inside an inset of {inset_m:g} m")
+    corners = HalfspaceIntersection(sides, inside).intersections
+    return frozen_array(corners[ConvexHull(corners).vertices])
+
+
+def _largest_circle(sides: FloatArray) -> tuple[FloatArray, float]:
+    """Return centre (2,) and radius of the largest circle inside `normal · x + offset ≤ 0`."""
+    from scipy.optimize import linprog  # keeps `designer --help` light
+
     x, y, radius = linprog(
         [0.0, 0.0, -1.0],
         A_ub=np.hstack([sides[:, :2], np.ones((len(sides), 1))]),
         b_ub=-sides[:, 2],
         bounds=[(None, None)] * 3,
     ).x
-    if radius <= 0.0:
-        raise ValueError(f"nothing is left inside an inset of {inset_m:g} m")
-    corners = HalfspaceIntersection(sides, np.array([x, y])).intersections
-    return frozen_array(corners[ConvexHull(corners).vertices])
+    return np.array([x, y]), float(radius)
 
 
 def contains(polygon_m: FloatArray, points_m: FloatArray) -> BoolArray:
