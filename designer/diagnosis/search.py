@@ -257,7 +257,24 @@ class Searcher:
         if self._unseen_loss(together, model) >= self._unseen_loss(effects, present):
             return effects, present
         kept = self._pruned(together)
-        return kept, self.fit(kept, model)
+        model = self.fit(kept, model)
+        return (
+            (kept, model) if self._earn_their_places(kept, effects, model) else (effects, present)
+        )
+
+    def _earn_their_places(
+        self, together: Sequence[Effect], effects: Sequence[Effect], model: Fit
+    ) -> bool:
+        """Tell whether all of a set that are not among these effects do, beside the others."""
+        looks = len(self.candidates) ** 2
+        for effect in without(together, *(effect.key for effect in effects)):
+            rest = without(together, effect.key)
+            present = self.fit(rest, model)
+            gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
+            trial = EffectTrial(effect, model, gain, _chance(gain, effect, looks), float("nan"))
+            if not self._validated(rest, present, [trial], looks)[0].may_be_added:
+                return False
+        return True
 
     def _better_sets(self, effects: Sequence[Effect], present: Fit, alone: Fit) -> list[Fit]:
         """Return fits of the sets that promise most, where they are better than the present one."""
