@@ -14,7 +14,8 @@ from report_parts import diagnosis_page
 from shared_data import needs_shared, shared
 from twins import physics
 from twins.dataset import DataSet, make, size_for
-from twins.robots import HALL6, YARD3, TwinRobot
+from twins.robots import FAST3, HALL6, YARD3, TwinRobot
+from twins.troubles import NO_EFFECT, noisy
 
 from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.design import with_design
@@ -104,6 +105,12 @@ def test_a_single_effect_is_found_first_with_its_size(robot, effect, twins) -> N
     assert after.length_m.heldout.value < 1.2 * found.noise.length_m
     assert after.tension_N.heldout.value < 1.2 * found.noise.tension_N
     assert after.length_m.heldout.low < after.length_m.heldout.value < after.length_m.heldout.high
+
+
+@pytest.mark.slow
+def test_noise_that_lasts_is_no_set_of_effects(tmp_path) -> None:
+    data = noisy(FAST3, NO_EFFECT["AR0.97"], 702, 60)
+    assert not diagnose(case_in(study_of(data, tmp_path))).findings
 
 
 def test_two_effects_are_found_together(tmp_path) -> None:
