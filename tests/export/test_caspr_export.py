@@ -67,7 +67,8 @@ def read_back(folder, study: Study) -> tuple[ForeignRobot, tuple[str, ...]]:
 
 
 @pytest.mark.parametrize("kind", ["body", "point", "body in a plane", "point in a plane"])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.cases_by_default(12)
+@pytest.mark.parametrize("seed", range(10))
 def test_random_robots_are_read_back(tmp_path, kind: str, seed: int) -> None:
     robot, pose = random_robot(np.random.default_rng([seed, len(kind)]), kind)
     low, high = np.sort(np.random.default_rng(seed).uniform(-5.0, 5.0, (2, 3)), axis=0)

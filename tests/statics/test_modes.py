@@ -76,7 +76,7 @@ def test_against_finite_elements_that_follow_the_platform(machines, name: str) -
     assert np.isnan(ours[~statics.is_solved]).all()
     solved = np.flatnonzero(statics.is_solved)
     assert len(solved) >= 3
-    for k in solved[:2]:
+    for k in solved[:3]:
         at = statics.part(int(k))
         K, M = twin(at, density)
         alone = fe.condensed(K, M, robot.degrees_of_freedom)
@@ -125,7 +125,7 @@ def test_where_the_cables_are_slow_the_lowest_of_all_lies_between_the_bounds(
     robot, cable, poses = machines[name]
     density = cable.linear_density_kg_per_m
     statics = solve_sagging(robot, poses, cable)
-    for k in np.flatnonzero(statics.is_solved)[:2]:
+    for k in np.flatnonzero(statics.is_solved)[:3]:
         at = statics.part(int(k))
         high = float(platform_frequencies_Hz(at, robot.platform, density).min())
         low = float(lowest_bound_Hz(at, high, density))
