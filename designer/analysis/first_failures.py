@@ -13,7 +13,7 @@ from designer.model.region import Region
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.selection.cases import CaseResult
-from designer.statics.inverse import solve_sagging
+from designer.statics.inverse import Statics, solve_sagging
 
 _PER_EDGE, _PER_FACE = 2, 6
 _TURNS = 24
@@ -69,7 +69,7 @@ def first_failures(case: CaseResult) -> tuple[FirstFailure, ...]:
     start = np.concatenate([places[mask] for mask in leaves])
     along = np.array([along for _, along in directions])[way]
     distance = _first_distances_m(
-        lambda rows, far: _failure(loaded, start[rows] + far[:, None] * along[rows], turn)[0],
+        lambda rows, far: _fails(loaded, start[rows] + far[:, None] * along[rows], turn),
         way,
         reach,
     )
@@ -80,7 +80,9 @@ def first_failures(case: CaseResult) -> tuple[FirstFailure, ...]:
         if len(rows):
             nearest = rows[distance[rows].argmin()]
             far, place = float(distance[nearest]), start[nearest] + distance[nearest] * direction
-            why = _failure(loaded, place[None], turn)[1][0]
+            statics = _solved(loaded, place[None], turn)
+            is_solved, verdict = statics.is_solved[0], Verdict(int(statics.verdict[0]))
+            why = "overloaded" if is_solved else verdict.label
         failures.append(FirstFailure(name, direction, far, place, why, reach))
     return tuple(failures)
 
@@ -131,14 +133,13 @@ def _first_distances_m(
     return high
 
 
-def _failure(
-    loaded: Loaded, position_m: FloatArray, turn_rad: FloatArray
-) -> tuple[BoolArray, list[str]]:
-    """Tell which positions fail (n,), and why the first of them does, or the last does not."""
+def _solved(loaded: Loaded, position_m: FloatArray, turn_rad: FloatArray) -> Statics:
     turns = np.broadcast_to(turn_rad, (len(position_m), len(turn_rad)))
-    places = np.hstack([position_m, turns])
-    statics = solve_sagging(loaded.robot, Poses.at(places), loaded.cable, seeks_better=False)
+    poses = Poses.at(np.hstack([position_m, turns]))
+    return solve_sagging(loaded.robot, poses, loaded.cable, seeks_better=False)
+
+
+def _fails(loaded: Loaded, position_m: FloatArray, turn_rad: FloatArray) -> BoolArray:
+    statics = _solved(loaded, position_m, turn_rad)
     over = statics.largest_tension_N > loaded.cable.allowable_tension_N
-    why = ["overloaded" if s else Verdict(int(v)).label for s, v in
-           zip(statics.is_solved, statics.verdict, strict=True)]  # fmt: skip
-    return np.asarray(~statics.is_solved | over), why
+    return np.asarray(~statics.is_solved | over)

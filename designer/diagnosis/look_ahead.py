@@ -66,7 +66,7 @@ class LinearModel:
         columns = beside(orthonormal(root * known), columns)
         self._products = columns.T @ columns
         ends = len(shifts) + np.cumsum([0, *map(len, sizes)])
-        self._places = [np.arange(*ends_of_one) for ends_of_one in pairwise(ends)]
+        self._places = [np.arange(first, end) for first, end in pairwise(ends)]
         self._sizes = sizes
 
     @property
@@ -86,8 +86,8 @@ class LinearModel:
 
     def settings(self, members: Sequence[int]) -> tuple[Setting, ...]:
         """Return the values to which the step leads."""
-        steps = np.split(self.step(members)[1], np.cumsum([len(self._sizes[k]) for k in members]))
-        pairs = zip(members, steps, strict=False)
+        ends = np.cumsum([len(self._sizes[k]) for k in members])[:-1]
+        pairs = zip(members, np.split(self.step(members)[1], ends), strict=True)
         return tuple(self.views[k].moved(step / self._sizes[k]) for k, step in pairs)
 
 
@@ -134,8 +134,8 @@ def best_sets(
         starts = sorted(reached, key=reached.__getitem__)[: None if size == 1 else _WIDTH]
     limit = best.get(own, (np.inf, ()))
     others = [
-        found
-        for name, found in best.items()
-        if found < limit and not (own <= name and len(name) <= len(own) + 1)
+        promise
+        for name, promise in best.items()
+        if promise < limit and not (own <= name and len(name) <= len(own) + 1)
     ]
     return [model.settings(members) for _, members in sorted(others)[:count]]

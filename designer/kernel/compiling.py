@@ -8,7 +8,7 @@ from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import llvmlite.binding
 import numba
@@ -38,6 +38,7 @@ class _Inner(JITCodeLibrary):  # type: ignore[misc]
 
     @property
     def codegen(self) -> _Inner:
+        """What is told of the environment."""
         return self
 
     def set_env(self, name: str, environment: object) -> None:
@@ -56,6 +57,8 @@ class _Inner(JITCodeLibrary):  # type: ignore[misc]
 
 
 class _InnerCompiler(Compiler):  # type: ignore[misc]
+    """Numba's compiler, which puts its code into such a library."""
+
     def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
         super().__init__(typing, target, library or _Inner(target.codegen(), "inner"), *rest)
 
@@ -81,22 +84,16 @@ def inner(function: Function) -> Function:
 
 
 def kernel(function: Function) -> Function:
-    """Compile a loop over poses or boxes; releases the interpreter lock and is kept on disk."""
-    compiled: Function = numba.njit(**_CALLED_FROM_PYTHON)(function)
-    return _kept(compiled)
+    """Compile a loop over poses or boxes, which releases the interpreter lock.
 
-
-def _kept(function: Function) -> Function:
-    """Keep the machine code on disk; where no folder takes it, each process compiles anew."""
-    if numba.config.DISABLE_JIT:
-        return function
-    compiled: Any = function
-    try:
-        compiled._cache = _Cache(compiled.py_func)
-    except RuntimeError:
-        return function
-    compiled._cache._cache_file = _Files(compiled._cache._cache_file)
-    return function
+    The machine code is kept on disk; where no folder takes it, each process compiles anew.
+    """
+    compiled: Any = numba.njit(**_CALLED_FROM_PYTHON)(function)
+    if not numba.config.DISABLE_JIT:
+        with suppress(RuntimeError):
+            compiled._cache = _Cache(compiled.py_func)
+            compiled._cache._cache_file = _Files(compiled._cache._cache_file)
+    return cast("Function", compiled)
 
 
 class _Locator(_CacheLocator):  # type: ignore[misc]
