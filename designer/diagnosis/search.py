@@ -108,12 +108,16 @@ class Step:
         Whether there was time to try all.
     passed_over : mapping of str to float
         Candidates that were not fitted, with the gain that one linear step promised, best first.
+    instead : tuple of Effect
+        What takes the place of all that was found, this round's as well, as it does better
+        together; mostly empty.
     """
 
     trials: tuple[EffectTrial, ...]
     added: Effect | None
     is_complete: bool = True
     passed_over: Mapping[str, float] = field(default_factory=dict)
+    instead: tuple[Effect, ...] = ()
 
 
 def _best(trials: Sequence[EffectTrial]) -> list[EffectTrial]:
@@ -219,14 +223,16 @@ class Searcher:
             extended = [self._extended(effects, t, trials) for t in best * (len(effects) < 5)]
             # Physics that makes more of the others superfluous is the simpler cause.
             fewest = min(range(len(extended)), key=lambda k: len(extended[k]), default=0)
-            if trials:
-                added = best[fewest].effect if best else None
-                steps.append(Step(tuple(trials), added, not is_over, passed_over))
+            added = best[fewest].effect if best else None
             if extended:
                 effects = extended[fewest]
                 present = self.fit(effects, best[fewest].fit)
+            before = effects
             if extended or not effects:  # else it was done when they were found
                 effects, present = self._looked_ahead(effects, present, alone)
+            if trials:
+                instead = () if effects is before else tuple(effects)
+                steps.append(Step(tuple(trials), added, not is_over, passed_over, instead))
         effects = self._predicting(self._reconsidered(effects, present, steps), present)
         return tuple(steps), self.fit(effects, present, thorough=True), tuple(effects)
 
@@ -258,9 +264,9 @@ class Searcher:
             return effects, present
         kept = self._pruned(together)
         model = self.fit(kept, model)
-        return (
-            (kept, model) if self._earn_their_places(kept, effects, model) else (effects, present)
-        )
+        if not self._earn_their_places(kept, effects, model):
+            return effects, present
+        return kept, model
 
     def _earn_their_places(
         self, together: Sequence[Effect], effects: Sequence[Effect], model: Fit

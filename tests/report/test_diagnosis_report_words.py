@@ -126,9 +126,7 @@ def test_neighbouring_rows_are_drawn_together() -> None:
 
 
 def test_rivals_of_several_effects_are_said_to_stand_together() -> None:
-    assert words.either(["creep"]) == "creep"
-    rivals = ["creep", "winch_zero of cable 1 and winch_zero of cable 3"]
-    assert (
-        words.either(rivals) == "creep or winch_zero of cable 1 and winch_zero of cable 3 together"
-    )
-    assert words.either(["winch_zero", "pose_shift"], "and") == "winch_zero and pose_shift"
+    assert words.rival_names(["creep"]) == "creep"
+    pair = "winch_zero of cable 1 and winch_zero of cable 3"
+    assert words.rival_names(["creep", pair]) == f"creep or {pair} together"
+    assert words.rival_names(["winch_zero", "pose_shift"], "and") == "winch_zero and pose_shift"

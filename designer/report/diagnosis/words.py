@@ -101,7 +101,7 @@ def plain_finding(finding: Finding) -> str:
     return plain(finding.effect, {name: e.value for name, e in finding.parameters.items()})
 
 
-def either(rivals: Iterable[str], last: str = "or") -> str:
+def rival_names(rivals: Iterable[str], last: str = "or") -> str:
     """Return names of rivals as ``a, b or c and d together``."""
     return fmt.listing((f"{name} together" if " and " in name else name for name in rivals), last)
 
