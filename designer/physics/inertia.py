@@ -75,7 +75,7 @@ def consistent_mass_kg(
         [np.tensordot(half, a * a + b * b, 1), skew],
         [skew, np.tensordot(half, b * b + c * c, 1)],
     ]
-    end = np.linalg.inv(_regular(tangent.flexibility_m_per_N(*cable)))
+    end = tangent.inverse(_regular(tangent.flexibility_m_per_N(*cable)))
     mass = np.asarray(linear_density_kg_per_m * cable[0])
     plane = end @ np.moveaxis(np.array(rows), (0, 1), (-2, -1)) @ end * mass[..., None, None]
     X, _ = catenary.end_position_m(*cable)
@@ -95,13 +95,14 @@ def _along(
     share = 0.5 * (1.0 + _NODES)[:, None]
     stretch = share * length / EA
     V = F_z - w * length * (1.0 - share)
-    T, V_0 = np.hypot(F_x, V), F_z - w * length
+    T, V_0 = np.sqrt(F_x * F_x + V * V), F_z - w * length
     angle, _ = catenary.arc_angle(F_x, V_0, F_z, np.hypot(F_x, V_0), np.hypot(F_x, F_z), w * length)
     with np.errstate(invalid="ignore", divide="ignore"):
-        a = stretch + length * (_UP_TO_NODE @ (V**2 / T**3))
-        b = -length * (_UP_TO_NODE @ (F_x * V / T**3))
-        c = stretch + length * (_UP_TO_NODE @ (F_x**2 / T**3))
-        x = F_x * stretch + length * (_UP_TO_NODE @ (F_x / T))
+        along, up = F_x / T, V / T
+        a = stretch + length * (_UP_TO_NODE @ (up * up / T))
+        b = -length * (_UP_TO_NODE @ (along * up / T))
+        c = stretch + length * (_UP_TO_NODE @ (along * along / T))
+        x = F_x * stretch + length * (_UP_TO_NODE @ along)
     far = np.flatnonzero(~(angle < tangent.SHORT_ARC))
     if len(far):
         reach, F_x, EA, w = share * length[far], F_x[far], EA[far], w[far]

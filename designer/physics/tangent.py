@@ -76,8 +76,9 @@ def flexibility_m_per_N(
     total = np.zeros(length.shape)
     for node, weight in zip(0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS, strict=True):
         V = V_0 + node * w * length
+        square = F_x * F_x + V * V
         with np.errstate(invalid="ignore", divide="ignore"):
-            total = total + weight * V**2 / np.hypot(F_x, V) ** 3
+            total += weight * V * V / (square * np.sqrt(square))
     across = np.where(angle < SHORT_ARC, length * total, (angle - turn) / w)
     stretch = length / EA
     skew = -F_x * length * (F_z + V_0) / ((T_l + T_0) * T_l * T_0)
@@ -97,17 +98,23 @@ def stiffness_N_per_m(
     The inverse of `flexibility_m_per_N`, with the same parameters.
     """
     C = flexibility_m_per_N(length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m)
-    # An infinite entry gives a zero.
-    a, b, c = C[..., 0, 0], C[..., 0, 1], C[..., 1, 1]
-    soft = np.isinf(a)
+    stiffness = inverse(C)
+    soft = np.isinf(C[..., 0, 0])
+    if soft.any():  # an infinite entry gives a zero
+        stiffness[soft] = 0.0
+        stiffness[soft, 1, 1] = 1.0 / C[soft, 1, 1]
+    return stiffness
+
+
+def inverse(symmetric: FloatArray) -> FloatArray:
+    """Return the inverse of symmetric matrices (..., 2, 2)."""
+    a, b, c = symmetric[..., 0, 0], symmetric[..., 0, 1], symmetric[..., 1, 1]
     with np.errstate(invalid="ignore", divide="ignore"):
         determinant = a * c - b * b
-        rows = [[c / determinant, -b / determinant], [-b / determinant, a / determinant]]
-        inverse = np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-        folded = np.stack(
-            [np.zeros((*c.shape, 2)), np.stack([np.zeros_like(c), 1.0 / c], axis=-1)], axis=-2
-        )
-    return np.where(soft[..., None, None], folded, inverse)
+        result = np.empty(symmetric.shape)
+        result[..., 0, 0], result[..., 1, 1] = c / determinant, a / determinant
+        result[..., 0, 1] = result[..., 1, 0] = -b / determinant
+    return result
 
 
 def stiffness_over_pulley_N_per_m(

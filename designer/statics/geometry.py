@@ -181,12 +181,16 @@ def plane_vector(x: FloatArray, z: FloatArray, outward: FloatArray) -> FloatArra
 
 def in_space(plane: FloatArray, swing: FloatArray, outward: FloatArray) -> FloatArray:
     """Turn stiffness in the vertical plane and across it into three dimensions."""
-    out = np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1)
-    up = np.broadcast_to([0.0, 0.0, 1.0], out.shape)
-    axes = np.stack([out, up], axis=-1)
-    across = np.stack([-out[..., 1], out[..., 0], out[..., 2]], axis=-1)
-    sideways = swing[..., None, None] * across[..., :, None] * across[..., None, :]
-    return np.asarray(axes @ plane @ np.swapaxes(axes, -1, -2) + sideways)
+    x, y = outward[..., 0], outward[..., 1]
+    along = plane[..., 0, 0]
+    turned = np.empty((*np.broadcast_shapes(x.shape, along.shape), 3, 3))
+    turned[..., 0, 0] = along * x * x + swing * y * y
+    turned[..., 1, 1] = along * y * y + swing * x * x
+    turned[..., 0, 1] = turned[..., 1, 0] = (along - swing) * x * y
+    turned[..., :2, 2] = plane[..., 0, 1, None] * outward
+    turned[..., 2, :2] = plane[..., 1, 0, None] * outward
+    turned[..., 2, 2] = plane[..., 1, 1]
+    return turned
 
 
 def cross_matrix(vector: FloatArray) -> FloatArray:

@@ -66,9 +66,17 @@ def cable_mass_matrix(statics: Statics, linear_density_kg_per_m: FloatArray | fl
     outward = geometry.outward
     outward = np.where(outward.any(axis=-1, keepdims=True), outward, [1.0, 0.0])
     M = in_space(plane, across, outward)
-    B = cross_matrix(geometry.lever_m)
-    six = np.block([[M, -M @ B], [B @ M, -B @ M @ B]]).sum(axis=-3)
     rows = robot.balance_rows
+    if robot.is_point_mass:
+        return np.asarray(M.sum(axis=-3)[..., rows[:, None], rows])
+    B = cross_matrix(geometry.lever_m)
+    BM = B @ M  # its transpose is -M @ B
+    six = np.block(
+        [
+            [M.sum(axis=-3), np.swapaxes(BM.sum(axis=-3), -1, -2)],
+            [BM.sum(axis=-3), -(BM @ B).sum(axis=-3)],
+        ]
+    )
     return np.asarray(six[..., rows[:, None], rows])
 
 
@@ -106,8 +114,9 @@ def platform_frequencies_Hz(
         Zero for each way in which the platform would not stay; NaN where the pose is not solved or
         the platform's inertia is not known.
     """
-    squares, _, _ = _eigen(statics, body, linear_density_kg_per_m)
-    return np.asarray(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi))
+    stiffness, _, _ = _of_unit_mass(statics, body, linear_density_kg_per_m)
+    is_known = (statics.is_solved & knows_inertia(statics.robot, body))[..., None]
+    return np.where(is_known, _frequencies_Hz(np.linalg.eigvalsh(stiffness)), np.nan)
 
 
 def lowest_bound_Hz(
@@ -133,7 +142,9 @@ def platform_modes(
 ) -> tuple[Mode, ...]:
     """Return the modes of one equilibrium (), by frequency; parameters as above."""
     robot = statics.robot
-    squares, vectors, cables = _eigen(statics, body, linear_density_kg_per_m)
+    stiffness, to_shapes, cables = _of_unit_mass(statics, body, linear_density_kg_per_m)
+    squares, vectors = np.linalg.eigh(stiffness)
+    vectors = to_shapes @ vectors
     full = np.zeros((len(squares), 6))
     full[:, robot.balance_rows] = vectors.T
     turned = (full.reshape(-1, 2, 3) @ robot.upright).reshape(-1, 6)
@@ -144,16 +155,24 @@ def platform_modes(
     shapes = turned / (largest * np.sign(leading))[:, None]
     # Eigenvectors have the kinetic energy of a unit mass.
     shares = np.einsum("ik,ij,jk->k", vectors, cables, vectors)
-    frequencies = np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi)
-    rows = zip(frequencies.tolist(), shapes, shares.tolist(), strict=True)
+    rows = zip(_frequencies_Hz(squares).tolist(), shapes, shares.tolist(), strict=True)
     width = 3 if robot.is_point_mass else 6
     return tuple(Mode(frequency, shape[:width], share) for frequency, shape, share in rows)
 
 
-def _eigen(
+def _frequencies_Hz(squares: FloatArray) -> FloatArray:
+    """Return f of (2πf)²; 0 where that is negative."""
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi))
+
+
+def _of_unit_mass(
     statics: Statics, body: Platform, linear_density_kg_per_m: FloatArray | float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return (2πf)² (..., dof), vectors in columns of unit modal mass, and the cables' masses."""
+    """Return the stiffness whose eigenvalues are (2πf)² (..., dof, dof), and two further matrices.
+
+    That which turns its eigenvectors into shapes of unit modal mass, and the masses of the cables.
+    All zero, instead, where the pose is not solved or the inertia not known.
+    """
     robot = statics.robot
     is_known = statics.is_solved & knows_inertia(robot, body)
     # Turns are measured as displacements at the farthest attachment, or the numbers are far apart.
@@ -166,6 +185,4 @@ def _eigen(
     root = np.linalg.cholesky(np.where(known, mass, np.eye(len(scale))))
     inverse = np.linalg.inv(root)
     turned = inverse @ np.where(known, stiffness, 0.0) @ np.swapaxes(inverse, -1, -2)
-    squares, vectors = np.linalg.eigh(turned)
-    shapes = scale[:, None] * (np.swapaxes(inverse, -1, -2) @ vectors)
-    return np.where(is_known[..., None], squares, np.nan), shapes, cables
+    return turned, scale[:, None] * np.swapaxes(inverse, -1, -2), cables
