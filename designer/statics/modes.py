@@ -116,7 +116,8 @@ def platform_frequencies_Hz(
     """
     stiffness, _, _ = _of_unit_mass(statics, body, linear_density_kg_per_m)
     is_known = (statics.is_solved & knows_inertia(statics.robot, body))[..., None]
-    return np.where(is_known, _frequencies_Hz(np.linalg.eigvalsh(stiffness)), np.nan)
+    squares = np.asarray(np.linalg.eigvalsh(stiffness))
+    return np.where(is_known, _frequencies_Hz(squares), np.nan)
 
 
 def lowest_bound_Hz(
@@ -185,4 +186,4 @@ def _of_unit_mass(
     root = np.linalg.cholesky(np.where(known, mass, np.eye(len(scale))))
     inverse = np.linalg.inv(root)
     turned = inverse @ np.where(known, stiffness, 0.0) @ np.swapaxes(inverse, -1, -2)
-    return turned, scale[:, None] * np.swapaxes(inverse, -1, -2), cables
+    return np.asarray(turned), scale[:, None] * np.swapaxes(inverse, -1, -2), cables
