@@ -23,14 +23,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from designer import checked
 from designer.arrays import FloatArray, frozen_array
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 Ends = Literal["at_rest", "moving"]
 _INSTANTS = 400
@@ -195,6 +197,8 @@ def _unit(vector: FloatArray) -> FloatArray:
 
 
 def _spline(knots: FloatArray, places: FloatArray, ends: Ends) -> CubicSpline:
+    from scipy.interpolate import CubicSpline  # takes longer to import than a path to be read
+
     turned = np.hstack([places[:, :3], unwrapped(places[:, 3:])])
     return CubicSpline(knots, turned, bc_type="clamped" if ends == "at_rest" else "not-a-knot")
 

@@ -44,6 +44,7 @@ _STYLE = {
     "lines.linewidth": 1.3,
     "hatch.linewidth": 0.5,
     **dict.fromkeys(("axes.spines.top", "axes.spines.right"), False),
+    "axes.titley": 1.0,  # nothing is above axes that a title would have to be lifted over
     **dict.fromkeys(("figure.facecolor", "axes.facecolor"), "none"),
     "svg.fonttype": "path",
     "svg.hashsalt": "cdpr-designer",
