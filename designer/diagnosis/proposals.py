@@ -18,6 +18,8 @@ _CANDIDATES = 2000
 """Positions to look at: in a cube, neighbours are a twelfth of its side apart."""
 _APART = 0.15
 """Share of the region between proposals: else all three would be one place."""
+_TOLD_APART = 3.0
+"""Standard deviations between two rivals that are told apart."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,6 +40,15 @@ class Proposal:
     rival: str
     positions_m: FloatArray = field(metadata={"json": "poses"})
     separation: FloatArray
+
+    @property
+    def repeats(self) -> FloatArray:
+        """How often to measure each pose, until the two are three deviations apart (n_poses,).
+
+        Inf where both predict the same.
+        """
+        with np.errstate(divide="ignore"):
+            return np.ceil((_TOLD_APART / self.separation) ** 2)
 
 
 def propose(

@@ -179,9 +179,9 @@ def test_rivals_warnings_and_proposals_are_shown(diagnoses: dict[str, Diagnosis]
     finding = dataclasses.replace(
         found.findings[0], rivals=("drum_scale",), warnings=("radius_m = 9 m is outside",)
     )
-    proposal = Proposal(
-        "pulley_radius", "drum_scale", np.array([[9.0, 5.0, 2.0]]), np.array([41.5])
-    )
+    positions = np.array([[9.0, 5.0, 2.0], [1.0, 5.0, 2.0], [1.0, 1.0, 2.0]])
+    separation = np.array([41.5, 0.8, 0.0])
+    proposal = Proposal("pulley_radius", "drum_scale", positions, separation)
     doubtful = dataclasses.replace(
         found,
         findings=(finding,),
@@ -192,7 +192,9 @@ def test_rivals_warnings_and_proposals_are_shown(diagnoses: dict[str, Diagnosis]
     assert diagnosis_page(report).verdict.tone == "doubt"
     text = visible(render_html(report))
     assert "cannot tell pulley_radius from drum_scale" in text
-    assert "(9.00, 5.00, 2.00) m 41.5" in text
+    assert "(9.00, 5.00, 2.00) m 41.5 1" in text
+    assert "(1.00, 5.00, 2.00) m 0.800 15" in text  # 14.1 measurements
+    assert "(1.00, 1.00, 2.00) m 0 –" in text
     assert "radius_m = 9 m is outside" in text
     assert (
         "creep withdrawn. It fits as a constant, but would have to change with time by 40 %" in text
