@@ -541,13 +541,20 @@ class Searcher:
         return effects
 
     def _swapped(
-        self, effects: list[Effect], present: Fit, k: int, outsider: Effect, margin: float
+        self,
+        effects: list[Effect],
+        present: Fit,
+        k: int,
+        outsider: Effect,
+        margin: float = 0.0,
+        *,
+        anew: bool = False,
     ) -> tuple[list[Effect], Fit]:
         """Return effects and their fit with an outsider as member k, if better by a margin."""
         if outsider not in self._others(effects) or self.progress.is_over:
             return effects, present
         swapped = [*effects[:k], outsider, *effects[k + 1 :]]
-        model = self.fit(swapped, present)
+        model = self.fit(swapped, present, anew=anew)
         better = (self._penalised(present) - self._penalised(model)) / model.variance
         return (swapped, model) if better > margin else (effects, present)
 
@@ -555,10 +562,10 @@ class Searcher:
         self, effects: list[Effect], present: Fit, steps: Sequence[Step]
     ) -> list[Effect]:
         """Replace a member by what was as good when it was added, and is better beside them all."""
-        for step in steps:
-            added = next((t for t in step.trials if t.effect == step.added), None)
-            if added is None or len(effects) == 1:
-                continue
+        if len(effects) == 1:
+            return effects
+        members = [(s, t) for s in steps for t in s.trials if t.effect in (s.instead or [s.added])]
+        for step, added in members:
             variance = _best_variance(step.trials)
             least = added.score(variance) - RIVAL_MARGIN * added.fit.inflation[added.effect.key]
             for trial in step.trials:
@@ -567,7 +574,7 @@ class Searcher:
                 is_as_good = trial.may_be_added and trial.score(variance) >= least
                 if added.effect in effects and is_as_good and not is_later:
                     k = effects.index(added.effect)
-                    effects, present = self._swapped(effects, present, k, trial.effect, 0.0)
+                    effects, present = self._swapped(effects, present, k, trial.effect, anew=True)
         return effects
 
     def _pruned(self, effects: list[Effect]) -> list[Effect]:

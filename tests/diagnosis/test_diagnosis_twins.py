@@ -125,6 +125,19 @@ def test_two_effects_are_found_together(tmp_path) -> None:
     assert {effect.id for effect in found.steps[0].instead} == set(rivals)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("robot", "beside"), [(FAST3, "tension_hysteresis"), (YARD3, "tension_bias")]
+)
+def test_a_frame_that_is_only_shifted_is_not_turned(robot, beside, tmp_path) -> None:
+    sizes = {e: robot.draw(e, size_for(robot, e, 15.0), 0) for e in ("pose_shift", beside)}
+    found = diagnose(case_in(study_of(make(robot, sizes), tmp_path)))
+    assert {finding.effect.id for finding in found.findings} == {"pose_shift", beside}
+    estimates = next(f for f in found.findings if f.effect.id == "pose_shift").parameters
+    for name, value in sizes["pose_shift"].items():
+        assert abs(estimates[name].value - value) < 4.0 * estimates[name].std
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_nothing_is_found_where_nothing_is(seed, tmp_path) -> None:
     found = diagnose(case_in(study_of(make(YARD3, seed=seed), tmp_path)))
