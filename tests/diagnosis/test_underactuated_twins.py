@@ -20,6 +20,7 @@ def case_with(effects, folder, quantities=("length", "tension"), noise: float = 
     return case_of(study, study.measurements, read_measured(study))
 
 
+@pytest.mark.slow  # no other quick test compiles these kernels
 def test_readings_are_foretold(tmp_path) -> None:
     """Noise-free data of a measuring campaign, to the digits of its file."""
     case = case_with({}, tmp_path, noise=0.0)
