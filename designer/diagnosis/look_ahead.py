@@ -98,10 +98,10 @@ def best_sets(
     most: int,
     count: int,
 ) -> list[tuple[Setting, ...]]:
-    """Return sets of effects of which a linear step promises more than of those present.
+    """Return the sets of effects of which a linear step promises most.
 
-    Best first, after that step; without those that add one effect to the present ones, which is
-    what a search tries anyway.
+    Best first, after that step; without those present, and those that add one effect to them, which
+    is what a search tries anyway. Of the present ones a step may promise what no fit reaches.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def best_sets(
     penalty : callable
         What a set is to be better by for an effect.
     present : collection of Effect
-        The set to replace.
+        The set to replace, if any.
     most : int
         Effects in a set, at most.
     count : int
@@ -118,7 +118,7 @@ def best_sets(
     """
     effects = [view.setting.effect for view in model.views]
     own = frozenset(effect.key for effect in present)
-    best: dict[frozenset[str], tuple[float, tuple[int, ...]]] = {frozenset(): (model.nothing, ())}
+    best: dict[frozenset[str], tuple[float, tuple[int, ...]]] = {}
     starts: list[tuple[int, ...]] = [()]
     for size in range(1, most + 1):
         reached: dict[tuple[int, ...], float] = {}
@@ -132,10 +132,9 @@ def best_sets(
             name = keys | {effects[k].key}
             best[name] = min((score, more), best.get(name, (np.inf, ())))
         starts = sorted(reached, key=reached.__getitem__)[: None if size == 1 else _WIDTH]
-    limit = best.get(own, (np.inf, ()))
     others = [
         promise
         for name, promise in best.items()
-        if promise < limit and not (own <= name and len(name) <= len(own) + 1)
+        if promise[0] < model.nothing and not (own <= name and len(name) <= len(own) + 1)
     ]
     return [model.settings(members) for _, members in sorted(others)[:count]]

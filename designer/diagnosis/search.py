@@ -302,7 +302,7 @@ class Searcher:
     def _promising_sets(
         self, effects: Sequence[Effect], present: Fit, alone: Fit
     ) -> list[tuple[Setting, ...]]:
-        """Return the few sets of candidates that promise most, and more than the present one."""
+        """Return the few sets of candidates that promise most, beside the present one."""
         is_used = self.problem.used(self.rows)
         off, now = (self.problem.misfit(model.settings)[is_used] for model in (alone, present))
         known = np.empty((len(off), 0))

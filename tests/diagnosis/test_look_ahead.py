@@ -47,12 +47,12 @@ def test_a_pair_is_best_though_another_is_better_than_each_of_it() -> None:
     views = [view(key, residual, column[:, None]) for key, column in columns.items()]
     model = LinearModel(views, residual, np.empty((60, 0)), np.ones(60))
 
-    def better_than(*present: str) -> list[set[str]]:
+    def best_beside(*present: str) -> list[set[str]]:
         own = [v.setting.effect for v in views if v.setting.effect.key in present]
         sets = best_sets(model, lambda _: 2.0, own, 2, 4)
         return [{setting.effect.key for setting in together} for together in sets]
 
-    assert better_than("average") == [{"first", "second"}]
-    assert better_than("first", "second") == []
-    assert better_than()[0] == {"first", "second"}
-    assert {"average"} not in better_than()  # which adds one to none
+    assert best_beside("average")[0] == {"first", "second"}
+    assert {"first", "second"} not in best_beside("first", "second")
+    assert best_beside()[0] == {"first", "second"}
+    assert {"average"} not in best_beside()  # which adds one to none
