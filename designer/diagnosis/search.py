@@ -264,9 +264,10 @@ class Searcher:
             return effects, present
         kept = self._pruned(together)
         model = self.fit(kept, model)
-        if not self._earn_their_places(kept, effects, model):
-            return effects, present
-        return kept, model
+        is_better = self._penalised(model) < self._penalised(present)
+        if is_better and self._earn_their_places(kept, effects, model):
+            return kept, model
+        return effects, present
 
     def _earn_their_places(
         self, together: Sequence[Effect], effects: Sequence[Effect], model: Fit
