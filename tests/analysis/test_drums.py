@@ -50,6 +50,7 @@ def helix_m(radius_m: float, pitch_m: float) -> float:
     return float(np.linalg.norm(np.diff(points, axis=1), axis=0).sum())
 
 
+@pytest.mark.cases_by_default(4)
 @pytest.mark.parametrize("seed", range(12))
 def test_capacity_is_that_of_turns_laid_on_each_other(seed: int) -> None:
     rng = np.random.default_rng([seed, 20261125])

@@ -127,6 +127,7 @@ def settle(model, data, key: int) -> None:
     assert np.abs(data.qvel).max() < 1e-6
 
 
+@pytest.mark.cases_by_default(9)
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(2))
 def test_it_rests_where_we_say(kind: str, seed: int) -> None:
