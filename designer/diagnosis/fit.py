@@ -340,7 +340,8 @@ def _linear_step(residual: FloatArray, slopes: FloatArray) -> tuple[float, Float
         weight = np.minimum(1.0, HUBER / np.maximum(np.abs(rest), HUBER))
         weighted = unit * weight[:, None]
         square = weighted.T @ unit
-        ridge = 1e-10 * (np.trace(square) + 1e-100) * np.eye(len(scale))  # or nothing acts
+        # Not zero, even where no parameter does anything.
+        ridge = 1e-10 * (np.trace(square) + 1e-100) * np.eye(len(scale))
         step = -np.linalg.solve(square + ridge, weighted.T @ residual)
         rest = residual + unit @ step
     return float(huber(rest).sum()), step / scale

@@ -551,7 +551,10 @@ class Searcher:
         *,
         anew: bool = False,
     ) -> tuple[list[Effect], Fit]:
-        """Return effects and their fit with an outsider as member k, if better by a margin."""
+        """Return effects and their fit with an outsider as member k, if better by a margin.
+
+        With ``anew`` that fit starts far from the present one as well, which takes longer.
+        """
         if outsider not in self._others(effects) or self.progress.is_over:
             return effects, present
         swapped = [*effects[:k], outsider, *effects[k + 1 :]]
@@ -565,16 +568,21 @@ class Searcher:
         """Replace a member by what was as good when it was added, and is better beside them all."""
         if len(effects) == 1:
             return effects
-        members = [(s, t) for s in steps for t in s.trials if t.effect in (s.instead or [s.added])]
-        for step, added in members:
+        members = [
+            (step, member)
+            for step in steps
+            for member in step.trials
+            if member.effect in (step.instead or [step.added])
+        ]
+        for step, member in members:
             variance = _best_variance(step.trials)
-            least = added.score(variance) - RIVAL_MARGIN * added.fit.inflation[added.effect.key]
+            least = member.score(variance) - RIVAL_MARGIN * member.fit.inflation[member.effect.key]
             for trial in step.trials:
                 # An error of setting up is thought of before physics.
-                is_later = added.effect.cause == "setting_up" and trial.effect.cause == "physics"
+                is_later = member.effect.cause == "setting_up" and trial.effect.cause == "physics"
                 is_as_good = trial.may_be_added and trial.score(variance) >= least
-                if added.effect in effects and is_as_good and not is_later:
-                    k = effects.index(added.effect)
+                if member.effect in effects and is_as_good and not is_later:
+                    k = effects.index(member.effect)
                     effects, present = self._swapped(effects, present, k, trial.effect, anew=True)
         return effects
 

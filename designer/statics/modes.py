@@ -114,7 +114,7 @@ def platform_frequencies_Hz(
         Zero for each way in which the platform would not stay; NaN where the pose is not solved or
         the platform's inertia is not known.
     """
-    stiffness, _, _ = _of_unit_mass(statics, body, linear_density_kg_per_m)
+    stiffness, _, _ = _modal_matrices(statics, body, linear_density_kg_per_m)
     is_known = (statics.is_solved & knows_inertia(statics.robot, body))[..., None]
     squares = np.asarray(np.linalg.eigvalsh(stiffness))
     return np.where(is_known, _frequencies_Hz(squares), np.nan)
@@ -143,7 +143,7 @@ def platform_modes(
 ) -> tuple[Mode, ...]:
     """Return the modes of one equilibrium (), by frequency; parameters as above."""
     robot = statics.robot
-    stiffness, to_shapes, cables = _of_unit_mass(statics, body, linear_density_kg_per_m)
+    stiffness, to_shapes, cables = _modal_matrices(statics, body, linear_density_kg_per_m)
     squares, vectors = np.linalg.eigh(stiffness)
     vectors = to_shapes @ vectors
     full = np.zeros((len(squares), 6))
@@ -166,13 +166,14 @@ def _frequencies_Hz(squares: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi))
 
 
-def _of_unit_mass(
+def _modal_matrices(
     statics: Statics, body: Platform, linear_density_kg_per_m: FloatArray | float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the stiffness whose eigenvalues are (2πf)² (..., dof, dof), and two further matrices.
+    """Return the stiffness over the mass, and two further matrices (..., dof, dof).
 
-    That which turns its eigenvectors into shapes of unit modal mass, and the masses of the cables.
-    All zero, instead, where the pose is not solved or the inertia not known.
+    The eigenvalues of the first, which is symmetric, are (2πf)²; zero where the pose is not solved
+    or the inertia not known. The second turns its eigenvectors into shapes of unit modal mass; the
+    third is the mass of the cables.
     """
     robot = statics.robot
     is_known = statics.is_solved & knows_inertia(robot, body)

@@ -140,7 +140,7 @@ def largest_displacement_m_per_N(statics: Statics) -> FloatArray:
     n = int((statics.robot.balance_rows < 3).sum())
     C = compliance(statics)[..., :n, :n]
     good = np.asarray(np.isfinite(C).all(axis=(-2, -1)))
-    C = np.where(good[..., None, None], C, 0.0)
+    C = np.where(good[..., None, None], C, 0.0)  # symmetric, as an equilibrium has it
     largest = np.linalg.eigvalsh(0.5 * (C + np.swapaxes(C, -1, -2)))[..., -1]
     return np.where(good, largest, np.nan)
 

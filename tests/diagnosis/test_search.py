@@ -12,7 +12,7 @@ from twins.effects import predict
 from twins.robots import YARD3
 
 from designer.diagnosis.case import case_of
-from designer.diagnosis.fit import Fit
+from designer.diagnosis.fit import Fit, _linear_step, huber
 from designer.diagnosis.problem import Predictor, Problem
 from designer.diagnosis.search import EffectTrial, Searcher, _best
 from designer.diagnosis.statistics import heldout_rows
@@ -36,6 +36,13 @@ def searcher_of(folder: Path) -> Searcher:
     predict = Predictor(case.machine, case.measured)
     problem = Problem(case.measured, predict, Noise(YARD3.noise_m, YARD3.noise_N, "declared"))
     return Searcher(problem, case.candidates, (), ~heldout_rows(case.measured.n_rows))
+
+
+def test_a_step_of_what_does_nothing_goes_nowhere() -> None:
+    residual = np.array([1.0, -0.5, 0.25])
+    loss, step = _linear_step(residual, np.zeros((3, 2)))
+    assert loss == huber(residual).sum()
+    assert (step == 0.0).all()
 
 
 @pytest.mark.slow

@@ -194,7 +194,7 @@ def test_rivals_warnings_and_proposals_are_shown(diagnoses: dict[str, Diagnosis]
     assert "cannot tell pulley_radius from drum_scale" in text
     assert "(9.00, 5.00, 2.00) m 41.5 1" in text
     assert "(1.00, 5.00, 2.00) m 0.800 15" in text  # 14.1 measurements
-    assert "(1.00, 1.00, 2.00) m 0 –" in text
+    assert "(1.00, 1.00, 2.00) m 0 over 1000" in text
     assert "radius_m = 9 m is outside" in text
     assert (
         "creep withdrawn. It fits as a constant, but would have to change with time by 40 %" in text
