@@ -2,16 +2,16 @@
 
 Each case has directions of wind and inertia, lost cables and wrenches
 (`designer.model.load_case.Loaded`); each of these is solved over all samples, for all candidates
-that hold so far; of robots that are slow to solve over some of them at first, and over all where a
-candidate is searched. A lost cable, or warmth on braked winches, sets the platform moving, which
-takes long to follow: that is done for fewer samples. Between the samples it is searched in the
-direction in which a case asks for most, and in those near it.
+that hold so far: over some of them at first, and over all where a candidate is searched. A lost
+cable, or warmth on braked winches, sets the platform moving, which takes long to follow: that is
+done for fewer samples. Between the samples it is searched in the direction in which a case asks for
+most, and in those near it.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -36,6 +36,8 @@ _MOST_SAMPLES = 256
 """Poses in which lengths are kept, for the chosen one."""
 FEW_AT_FIRST = 128
 """Samples that candidates are tried at first where all of them take long."""
+_SOME_AT_FIRST = 2048
+"""The same where they do not."""
 _CLOSE = 0.95
 """Of the utilisation that governs: from where on other cases and directions are searched, too."""
 _MOST_ROUNDS = 6
@@ -60,8 +62,6 @@ class CaseResult:
         The same, also between the samples where ``is_refined``.
     is_full : bool
         Whether that search was the full one.
-    is_whole : bool
-        Whether all samples were solved, or, where lengths are kept, all that ever are.
     """
 
     workspace: Workspace
@@ -69,14 +69,6 @@ class CaseResult:
     sampled: Sampled
     verification: Verification
     is_full: bool = False
-    is_whole: bool = True
-
-    def whole(self) -> CaseResult:
-        """Return what is met over all samples."""
-        if self.is_whole or not self.verification.holds:
-            return self
-        ((loaded, sampled),) = sampled_at_tension([self.loaded], self.workspace)
-        return CaseResult(self.workspace, loaded, sampled, sampled.verification(loaded.cable))
 
     @property
     def case(self) -> LoadCase:
@@ -143,13 +135,13 @@ class Cases:
     few: int | None = None
 
     def hurried(self) -> Cases:
-        """Return the same, with few samples at first where all would take hours.
+        """Return the same, with few samples at first; all of them for candidates that are searched.
 
-        That is on robots that are slow to solve, where there is more than the static case: all
-        samples are left for candidates that are searched, see `CaseResult.whole`.
+        On robots that are slow to solve only where there is more than the static case.
         """
-        is_long = len(self.each) > 1 and not is_quick(self.robot)
-        return replace(self, few=FEW_AT_FIRST) if is_long else self
+        if is_quick(self.robot):
+            return replace(self, few=_SOME_AT_FIRST)
+        return replace(self, few=FEW_AT_FIRST) if len(self.each) > 1 else self
 
     @property
     def sample_count(self) -> int:
@@ -211,7 +203,8 @@ class Cases:
         is_whole = workspace is whole_workspace
         for candidate, sampled in solved:
             verification = sampled.verification(candidate.cable)
-            yield CaseResult(whole_workspace, candidate, sampled, verification, is_whole=is_whole)
+            of_all = replace(sampled, is_complete=is_whole and sampled.is_complete)
+            yield CaseResult(whole_workspace, candidate, of_all, verification)
 
 
 def resettled(result: CaseResult) -> CaseResult:
@@ -286,10 +279,25 @@ def searched(
 
     All of them in one batch.
     """
-    whole = [_with(c, {r: r.whole() for r in _close(worst_of_each(c))}) for c in candidates]
+    of_most = [result for c in candidates for result in _close(worst_of_each(c))]
+    completed = _completed(of_most)
+    whole = [_with(results, completed) for results in candidates]
     close = [(worst_of_each(results), governing(results)) for results in whole]
     replaced = _search([(r, r is not worst) for each, worst in close for r in _close(each)])
     return [_with(results, replaced) for results in whole]
+
+
+def _completed(results: Sequence[CaseResult]) -> dict[CaseResult, CaseResult]:
+    """Solve all samples where only some were; what each result that holds becomes."""
+    completed: dict[CaseResult, CaseResult] = {}
+    few = [r for r in results if r.verification.holds and not r.sampled.is_complete]
+    for of_load in _of_same_load(few):
+        workspace = of_load[0].workspace
+        solved = sampled_at_tension([result.loaded for result in of_load], workspace)
+        for result, (loaded, sampled) in zip(of_load, solved, strict=True):
+            verification = sampled.verification(loaded.cable)
+            completed[result] = CaseResult(workspace, loaded, sampled, verification)
+    return completed
 
 
 def _close(results: Sequence[CaseResult]) -> list[CaseResult]:
@@ -305,7 +313,7 @@ def searched_all(results: Sequence[CaseResult]) -> tuple[CaseResult, ...]:
     turns until neither gains. What is found is the largest that these searches met, from the worst
     of the first directions on; that there is none larger is not proved.
     """
-    results = tuple(result.whole() for result in results)
+    results = _with(results, _completed(results))
     replaced: dict[CaseResult, CaseResult] = {}
     for worst in worst_of_each(results):
         close = _close([result for result in results if result.case is worst.case])
@@ -331,22 +339,25 @@ def _search(results: Sequence[tuple[CaseResult, bool]]) -> dict[CaseResult, Case
 
 def _search_once(results: Sequence[CaseResult], *, is_light: bool) -> list[CaseResult]:
     """Search results, those on the same robot under the same load in one batch."""
-    searched, batches = list(results), defaultdict(list)
-    for k, result in enumerate(results):
-        if np.isfinite(result.utilisation) and not result.is_full:
-            if not result.loaded.keeps_lengths:
-                batches[_load_of(result.loaded)].append(k)
-            elif not is_light:
-                searched[k] = _search_settled(result)
-    for rows in batches.values():
-        of_load = [results[k] for k in rows]
+    fresh = [r for r in results if np.isfinite(r.utilisation) and not r.is_full]
+    settling = [] if is_light else [r for r in fresh if r.loaded.keeps_lengths]
+    searched = {result: _search_settled(result) for result in settling}
+    for of_load in _of_same_load([r for r in fresh if not r.loaded.keeps_lengths]):
         robot, workspace = of_load[0].loaded.robot, of_load[0].workspace
         cables, sampled = [r.loaded.cable for r in of_load], [r.sampled for r in of_load]
         effort = LIGHT if is_light else None
         verifications = refined_each(robot, workspace, cables, sampled, effort)
-        for k, verification in zip(rows, verifications, strict=True):
-            searched[k] = replace(results[k], verification=verification, is_full=not is_light)
-    return searched
+        for result, verification in zip(of_load, verifications, strict=True):
+            searched[result] = replace(result, verification=verification, is_full=not is_light)
+    return list(_with(results, searched))
+
+
+def _of_same_load(results: Sequence[CaseResult]) -> Iterable[list[CaseResult]]:
+    """Return the results of cables that meet the same load on the same robot, together."""
+    batches = defaultdict(list)
+    for result in results:
+        batches[_load_of(result.loaded)].append(result)
+    return batches.values()
 
 
 def _load_of(loaded: Loaded) -> Hashable:

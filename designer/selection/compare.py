@@ -103,8 +103,8 @@ def standing_of(
         return _standing_in_front(candidate, best, objectives, failed)
     number = dominator_of(burdens([candidate], objectives)[0], burdens(front, objectives))
     assert number is not None  # else it would be in the set
-    is_whole = all(case.is_whole for case in candidate.cases)
-    at = "the samples" if is_whole else "the samples tried first"
+    is_complete = all(case.sampled.is_complete for case in candidate.cases)
+    at = "the samples" if is_complete else "the samples tried first"
     unsearched = "" if met.is_refined else f"; holds at {at}, not searched between them"
     return "dominated", f"dominated by {front[number].label}{unsearched}"
 

@@ -25,6 +25,8 @@ _MOST_TURNS = 20
 """Of the fixed point, so that it ends: the need falls steeply, so a few turns reach it."""
 _STILL = 1e-7
 """Relative change of the diameter at which it is taken to stay: far below what can be bought."""
+_SAMPLES = 2048
+"""That a search for the worst pose of a family starts from, beside the worst of its sizes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,25 +57,28 @@ def continuous_optima(
     grades: Sequence[Grade],
     allowance: Allowance,
     built: AsBuilt,
-    doubtful: Sequence[FloatArray],
+    worst_places: Sequence[FloatArray],
 ) -> list[ContinuousOptimum]:
     """Return of each grade the thinnest member of its family that holds everywhere.
 
     With a sheave the strength of the family depends on the diameter, so the thinnest member is a
     fixed point. The need falls steeply with the diameter: a few turns reach it, most of them at
     the worst pose alone. With an effect that adds to a cable all figures depend on the diameter,
-    and its member is sought as in `designer.workspace.section`. ``doubtful`` are, of each grade,
-    places (n, n_coordinates) of the workspace at which members may fail: they are tried first.
+    and its member is sought as in `designer.workspace.section`. ``worst_places`` (n, n_coordinates)
+    are, of each grade, where its sizes are used most: the first is tried before all else, and the
+    search starts there and from the worst of some samples.
 
     The worst poses of all families are sought in one batch.
     """
     built, hangs_below = built.of_products, workspace.hangs_below
+    fewer = workspace.with_fewer_samples(_SAMPLES)
 
     def worsts_of(families: Mapping[int, Material]) -> Mapping[int, Worst]:
         worsts = {}
         for k, family in families.items():
-            if np.isposinf(diameter_demand(built.robot, family, hangs_below, doubtful[k])).any():
-                worsts[k] = Worst(doubtful[k][0], math.inf)
+            first = worst_places[k][:1]
+            if np.isposinf(diameter_demand(built.robot, family, hangs_below, first)).any():
+                worsts[k] = Worst(first[0], math.inf)
         unsettled = [k for k in families if k not in worsts]
         materials = [families[k] for k in unsettled]
 
@@ -81,7 +86,8 @@ def continuous_optima(
             each = MaterialsByPose(materials, search)
             return diameter_demand(built.robot, each, hangs_below, places, **how)
 
-        extremes = worst_over_samples(workspace, demand, len(materials))
+        starts = [worst_places[k] for k in unsettled]
+        extremes = worst_over_samples(fewer, demand, len(materials), starts)
         for k, (worst,) in zip(unsettled, extremes, strict=True):
             # Where every pose is left out, nothing is served.
             left_out = worst.demand == -math.inf

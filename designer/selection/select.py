@@ -207,19 +207,14 @@ class _SelectionRun:
             families = [unbent.family(g, g.thickest.diameter_m) for g in of_grades]
             return [ContinuousOptimum(family, math.nan) for family in families]
         workspace = self.cases.workspace
-        doubtful = [
-            next(
-                (
-                    case.sampled.worst_places[:1]
-                    for candidate in candidates
-                    for case in candidate.cases
-                    if case.sampled.not_held and case.case.region is None
-                ),
-                np.empty((0, workspace.space.n_coordinates)),
-            )
-            for _, candidates in grades
-        ]
-        return continuous_optima(workspace, of_grades, allowance, self.built, doubtful)
+        worst_places = []
+        for _, candidates in grades:
+            cases = [case for c in candidates for case in c.cases if case.case.region is None]
+            cases = [case for case in cases if np.isfinite(case.verification.worst_place).all()]
+            cases.sort(key=lambda case: not case.sampled.not_held)
+            places = dict.fromkeys(tuple(case.verification.worst_place) for case in cases)
+            worst_places.append(np.reshape(list(places), (-1, workspace.space.n_coordinates)))
+        return continuous_optima(workspace, of_grades, allowance, self.built, worst_places)
 
     def choose(self, candidates: Sequence[Candidate]) -> tuple[list[Candidate], set[Candidate]]:
         """Return the Pareto set, the best first, and what it was chosen from.

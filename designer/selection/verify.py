@@ -90,8 +90,8 @@ class Sampled:
     not_held : int
         Samples and landmarks that cannot be held, at least.
     is_complete : bool
-        Whether every sample was tried; else the figures are those of the samples up to where it
-        was settled that the cable does not serve the workspace.
+        Whether every sample of the study was tried; else the figures are those of some of them, or
+        of all up to where it was settled that the cable does not serve the workspace.
     """
 
     worst_places: FloatArray

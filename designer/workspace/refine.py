@@ -172,11 +172,13 @@ def refine_each_over_branches(
     return [extremes[k] for k in every.tolist()]
 
 
-def worst_over_samples(workspace: Workspace, demand: Demand, count: int) -> list[list[Worst]]:
+def worst_over_samples(
+    workspace: Workspace, demand: Demand, count: int, known: Sequence[FloatArray] | None = None
+) -> list[list[Worst]]:
     """Return the largest of each demand over all samples, then over the region from the best.
 
-    For a ``count`` of searches. Starts are the samples that ask for most of the first demand; see
-    `refine_each_over_branches`.
+    For a ``count`` of searches. Starts are the samples that ask for most of the first demand, and
+    of each search the places (n, n_coordinates) in ``known``; see `refine_each_over_branches`.
     """
     pools = [Pool(workspace.space) for _ in range(count)]
     for rows in workspace.places():
@@ -186,6 +188,8 @@ def worst_over_samples(workspace: Workspace, demand: Demand, count: int) -> list
             for k, of_search in zip(batch, values.reshape(len(batch), len(rows), -1), strict=True):
                 pools[k].add(rows, of_search[:, 0])
     starts = [pool.places for pool in pools]
+    if known is not None:
+        starts = [np.concatenate(places) for places in zip(starts, known, strict=True)]
     return refine_each_over_branches(workspace.space, demand, starts)
 
 

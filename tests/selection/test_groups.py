@@ -392,7 +392,7 @@ def test_cost_decides_where_the_study_says_so(fast_robot) -> None:
     longest = choice.chosen.verification.longest_m
     prices = [one.size.price_per_m for one in choice.chosen.ropes]
     assert choice.total == pytest.approx(float(np.dot(prices, longest)))
-    told = dict(_summary_of_groups(choice))
+    told = dict(_summary_of_groups(choice, None))
     assert choice.proof == "optimal"
     assert told["  groups' cost"] == f"{choice.total:.4g} EUR in all; proved least"
     assert "proved" not in told["  groups' mass"]

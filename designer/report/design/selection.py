@@ -11,7 +11,6 @@ from designer.report import format as fmt
 from designer.report.document import MOST_ROWS
 from designer.report.figures.charts_selection import rank
 from designer.selection.candidate import Candidate, Standing
-from designer.selection.cases import FEW_AT_FIRST
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import GradeOutcome, SelectionResult
 
@@ -36,8 +35,15 @@ def selection(analysis: Analysis) -> Context | None:
         "less_is_better": not any(meaning.more_is_better for meaning in meanings),
         "fitting": sum(outcome.outcome == "fits" for outcome in result.outcomes),
         "holding": sum(c.verification.holds for c in tried),
-        "is_whole": all(case.is_whole for c in tried for case in c.cases),
-        "few_at_first": FEW_AT_FIRST,
+        "at_first": max(
+            (
+                case.sampled.samples
+                for c in tried
+                for case in c.cases
+                if c.verification.holds and not case.sampled.is_complete
+            ),
+            default=None,
+        ),
         "trust_meaning": TRUST_MEANING,
         "trusts": [letter for letter in TRUST_MEANING if letter in trusts],
         "front_form": _form(result.front),
