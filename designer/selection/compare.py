@@ -24,19 +24,26 @@ NEAR_LIMIT = 0.9
 
 
 def settle(
-    candidates: Sequence[Candidate], objectives: Sequence[Objective], search: Search
+    candidates: Sequence[Candidate],
+    objectives: Sequence[Objective],
+    search: Search,
+    *,
+    searches_others: bool = True,
 ) -> list[Candidate]:
     """Return the Pareto set, the best first, each member searched between the samples.
 
-    The search can only raise tensions and lengths, and what it raises is compared again. Searched
-    are the members of the set, the best of each grade, and whoever is near its limit; for the
-    others the samples are enough, since nothing depends on them.
+    The search can only raise tensions and lengths, and what it raises is compared again. With
+    ``searches_others`` the best of each grade are searched as well, and whoever is near its limit;
+    for the rest the samples are enough, since nothing depends on them.
     """
     pending = True
     while pending:
         holding = [c for c in candidates if may_win(c, objectives)]
         front = [holding[k] for k in np.flatnonzero(is_undominated(burdens(holding, objectives)))]
         pending = _search_all(front, search)
+    front.sort(key=lambda candidate: candidate.key(objectives))
+    if not searches_others:
+        return front
     of_grades = [
         [candidate for candidate in candidates if candidate.grade is grade]
         for grade in dict.fromkeys(candidate.grade for candidate in candidates)
@@ -46,7 +53,7 @@ def settle(
     holding = [c for c in candidates if c.verification.holds]
     near_limit = [c for c in holding if c.verification.utilisation > NEAR_LIMIT]
     _search_all(near_limit, search)
-    return sorted(front, key=lambda candidate: candidate.key(objectives))
+    return front
 
 
 def best_of(candidates: Sequence[Candidate], objectives: Sequence[Objective]) -> Candidate | None:

@@ -75,8 +75,9 @@ def select(
     ``grades`` is the whole catalogue, which ``selection.grades`` narrows; ``built`` tells by how
     much cables on this machine differ from their data sheet. A product holds that holds in every
     load case; without any it is the static one. It is tried for ``proof_s`` to prove that the best
-    holds in all poses [s]. Without ``explains`` it is not told what a grade comes to (its optimum),
-    why nothing is chosen and what would hold then, nor what share the sizes serve.
+    holds in all poses [s]. Without ``explains`` it is not told what a grade comes to (its optimum
+    and its best size), why nothing is chosen and what would hold then, nor what share the sizes
+    serve.
     """
     grades, price_estimate = with_prices(grades, selection)
     allowed = [g for g in grades if is_allowed(g, selection.grades)]
@@ -122,7 +123,7 @@ def best_product(
     """
     allowed = offered(grades, selection)
     cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
-    run = _SelectionRun(cases, selection, built or AsBuilt(robot), allowed)
+    run = _SelectionRun(cases, selection, built or AsBuilt(robot), allowed, explains=False)
     front, _ = run.choose(run.sampled(allowed))
     return front[0] if front else None
 
@@ -235,7 +236,7 @@ class _SelectionRun:
                 meeting = [c for c in candidates if c.rejected_by is None]
                 meets_all = any(may_win(c, objectives) for c in meeting)
                 allowed = meeting if meets_all else candidates
-                front = settle(allowed, objectives, search)
+                front = settle(allowed, objectives, search, searches_others=self.explains)
                 if not front:
                     break
                 best = front[0]
