@@ -17,7 +17,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from designer.arrays import IntArray
+from designer.arrays import FloatArray, IntArray
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
 from designer.model.robot import Poses, Robot
@@ -30,7 +30,7 @@ from designer.statics.cable_loss import CableLoss
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
 from designer.workspace.demand import settled, tension_demand
-from designer.workspace.refine import LIGHT, refine_over_branches
+from designer.workspace.refine import LIGHT, Worst, refine_over_branches
 
 _MOST_SAMPLES = 256
 """Poses in which lengths are kept, for the chosen one."""
@@ -378,13 +378,7 @@ def _search_settled(result: CaseResult) -> CaseResult:
     (worst,) = refine_over_branches(workspace.space, demand, starts, LIGHT)
     # Lengths are those before it settles.
     (lengths,) = refined_each(loaded.robot, workspace, [loaded.cable], [sampled], LIGHT)
-    verification = replace(
-        lengths,
-        worst_place=worst.place,
-        max_tension_N=worst.demand,
-        utilisation=worst.demand / loaded.cable.allowable_tension_N,
-    )
-    return replace(result, verification=verification, is_full=True)
+    return _with_worst(replace(result, verification=lengths, is_full=True), worst)
 
 
 def _turned(result: CaseResult) -> CaseResult:
@@ -397,21 +391,41 @@ def _turned(result: CaseResult) -> CaseResult:
 def _turned_once(result: CaseResult) -> CaseResult:
     if not result.verification.is_refined:  # with another stiffness than before
         (result,) = _search_once([result], is_light=True)
+    first = result
     for _ in range(_MOST_ROUNDS):
-        before = result.utilisation
-        steeper = _steepest(result)
+        before, steeper = result.utilisation, _steepest(result)
         if result.loaded.keeps_lengths:  # a search for the pose takes long
-            result = governing([result, steeper])
-            break
-        loaded, place = steeper.loaded, steeper.verification.worst_place
-        start = replace(steeper.sampled, worst_places=place[None])
-        (moved,) = refined_each(loaded.robot, steeper.workspace, [loaded.cable], [start], LIGHT)
-        if moved.utilisation > steeper.utilisation:
-            steeper = replace(steeper, verification=moved)
+            return governing([result, steeper])
+        demand = partial(tension_demand, steeper.loaded, steeper.workspace.hangs_below)
+        start = steeper.verification.worst_place[None]
+        (worst,) = refine_over_branches(steeper.workspace.space, demand, start, LIGHT)
+        moved = _with_worst(steeper, worst)
+        steeper = moved if moved.utilisation > steeper.utilisation else steeper
         result = steeper if steeper.utilisation > before else result
         if not np.isfinite(result.utilisation) or result.utilisation <= before * (1.0 + _SAME):
             break
-    return result
+    return result if result.loaded is first.loaded else _with_lengths(result)
+
+
+def _with_worst(result: CaseResult, worst: Worst) -> CaseResult:
+    """Return a result with the largest tension at another place."""
+    verification = replace(
+        result.verification,
+        worst_place=worst.place,
+        max_tension_N=worst.demand,
+        utilisation=worst.demand / result.loaded.cable.allowable_tension_N,
+    )
+    return replace(result, verification=verification)
+
+
+def _with_lengths(result: CaseResult) -> CaseResult:
+    """Return a result with the lengths that its direction asks for as well, searched lightly."""
+    loaded, met = result.loaded, result.verification
+    start = replace(result.sampled, worst_places=met.worst_place[None])
+    (lengths,) = refined_each(loaded.robot, result.workspace, [loaded.cable], [start], LIGHT)
+    longest = np.maximum(met.longest_m, lengths.longest_m)
+    shortest = np.fmin(met.shortest_m, lengths.shortest_m)
+    return replace(result, verification=replace(met, longest_m=longest, shortest_m=shortest))
 
 
 def _steepest(result: CaseResult) -> CaseResult:
@@ -422,12 +436,9 @@ def _steepest(result: CaseResult) -> CaseResult:
         return tension_N / loaded.cable.allowable_tension_N
 
     loaded, utilisation = steepest(result.loaded, result.utilisation, utilisation_of)
-    verification = replace(
-        result.verification,
-        max_tension_N=utilisation * loaded.cable.allowable_tension_N,
-        utilisation=utilisation,
-    )
-    return replace(result, loaded=loaded, verification=verification)
+    tension_N = utilisation * loaded.cable.allowable_tension_N
+    worst = Worst(result.verification.worst_place, tension_N)
+    return _with_worst(replace(result, loaded=loaded), worst)
 
 
 def steepest(
@@ -440,8 +451,36 @@ def steepest(
     step = 0.5
     while step > 1e-6:
         trials = [(severity_of(turned), turned) for turned in loaded.turned(step)]
+        summit = _summit(loaded, severity, trials)
+        if summit is not None:
+            trials.append((severity_of(summit), summit))
         highest, turned = max(trials, key=lambda trial: trial[0])
         gains = highest > severity
         loaded, severity = (turned, highest) if gains else (loaded, severity)
-        step *= 1.0 if gains else 0.125
+        step *= 0.02 if turned is summit else 1.0 if gains else 0.125
     return loaded, severity
+
+
+def _summit(
+    loaded: Loaded, severity: float, trials: Sequence[tuple[float, Loaded]]
+) -> Loaded | None:
+    """Return the directions that are worst if severity is linear in each, as tension nearly is.
+
+    None where only a wrench is changed, or a trial is not finite.
+    """
+    directions: dict[str, FloatArray] = {}
+    for name in ("wind", "inertia"):
+        along = getattr(loaded, name)
+        beside = [(value, getattr(trial, name)) for value, trial in trials]
+        moved = [(value - severity, other - along) for value, other in beside if other is not along]
+        if moved:
+            rise, aside = map(np.array, zip(*moved, strict=True))
+            if not np.isfinite(rise).all():
+                return None
+            slope = np.linalg.lstsq(aside, rise, rcond=None)[0]
+            if slope.any():
+                directions[name] = slope / np.linalg.norm(slope)
+    if not directions:
+        return None
+    wind, inertia = (directions.get(k, getattr(loaded, k)) for k in ("wind", "inertia"))
+    return loaded.case.under(*loaded.bare, wind, inertia, loaded.lost_cable, loaded.wrench_N)
