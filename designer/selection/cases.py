@@ -468,6 +468,8 @@ def _summit(
 
     None where only a wrench is changed, or a trial is not finite.
     """
+    if not np.isfinite([severity, *(value for value, _ in trials)]).all():
+        return None
     directions: dict[str, FloatArray] = {}
     for name in ("wind", "inertia"):
         along = getattr(loaded, name)
@@ -475,8 +477,6 @@ def _summit(
         moved = [(value - severity, other - along) for value, other in beside if other is not along]
         if moved:
             rise, aside = map(np.array, zip(*moved, strict=True))
-            if not np.isfinite(rise).all():
-                return None
             slope = np.linalg.lstsq(aside, rise, rcond=None)[0]
             if slope.any():
                 directions[name] = slope / np.linalg.norm(slope)

@@ -15,14 +15,21 @@ from designer.effects.design import AsBuilt
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.model.cable import Cable
-from designer.model.load_case import Ice, LoadCase, Wind
+from designer.model.load_case import Ice, LoadCase, Loaded, Wind
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.region import Region
 from designer.model.robot import Poses
 from designer.model.workspace import Workspace
 from designer.resources import example_file
-from designer.selection.cases import CaseResult, Cases, governing, searched_all, together
+from designer.selection.cases import (
+    CaseResult,
+    Cases,
+    governing,
+    searched_all,
+    steepest,
+    together,
+)
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.selection.verify import verify
@@ -131,6 +138,23 @@ def test_few_samples_at_first_change_no_figure_of_what_is_searched(region: Regio
     assert {one.sampled.samples for one in few} == {40}
     assert [one.utilisation for one in few] == [one.utilisation for one in full]
     assert [one.is_full for one in few] == [one.is_full for one in full]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_load_is_turned_to_where_a_linear_severity_is_largest(seed: int) -> None:
+    slope, tried = np.random.default_rng(seed).normal(size=3), 0
+
+    def severity_of(loaded: Loaded) -> float:
+        nonlocal tried
+        tried += 1
+        return float(slope @ loaded.inertia)
+
+    case = LoadCase("starting", acceleration_m_per_s2=1.0)
+    first = next(iter(case.on(FOUR, Cable(0.006, 0.13, 1.5e6, 2e4))))
+    turned, severity = steepest(first, severity_of(first), severity_of)
+    assert turned.inertia == pytest.approx(slope / np.linalg.norm(slope), abs=1e-6)
+    assert severity == pytest.approx(np.linalg.norm(slope), rel=1e-12)
+    assert tried < 60
 
 
 def test_all_but_slow_robots_in_one_case_hurry() -> None:
