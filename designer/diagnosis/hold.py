@@ -209,8 +209,8 @@ def search_and_hold(
     if _mistaken(problem, unsearched.settings, rows):
         return Outcome(searcher, problem, rows, (), unsearched, ())
     steps, near, effects_found = searcher.run()
-    # Where readings tell internal forces, losses go with how far they are trusted: with an effect and
-    # without it as far, and not as far as the search happened to.
+    # Where readings tell internal forces, losses go with how far they are trusted: with an effect
+    # and without it as far, and not as far as the search happened to.
     problem = problem.without_memory()
     searcher = replace(searcher, problem=problem)
     model = searcher.fit(effects_found, near, thorough=True, anew=True)
