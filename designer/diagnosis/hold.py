@@ -213,7 +213,7 @@ def search_and_hold(
     # and without it as far, and not as far as the search happened to.
     problem = problem.without_memory()
     searcher = replace(searcher, problem=problem)
-    model = searcher.fit(effects_found, near, thorough=True, anew=True)
+    model = searcher.fit(effects_found, near, thorough=True)
     # The best of what would still earn its place, but with values that nobody would believe; and of
     # what would, did the readings not drift.
     last = steps[-1].trials if steps else ()
