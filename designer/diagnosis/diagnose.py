@@ -102,7 +102,7 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     problem = Problem(measured, predict, outcome.problem.noise)
     outcome, gains = keep_what_helps(outcome, problem, heldout, progress)
     # What is told of the model shall not depend on the path that the search took to it.
-    problem = problem.without_memory()
+    problem = replace(problem, predict=predict.at(measured))
     return _told(case, outcome, problem, gains, heldout, progress)
 
 

@@ -162,8 +162,8 @@ class Outcome:
         return structure_left(self.problem, self.fit.settings, self.rows)
 
     def fit_without(self, effect: Effect) -> Fit:
-        """Fit the other effects, from the present values and in each valley that they have."""
-        return self.searcher.fit(without(self.found, effect.key), self.fit, anew=True)
+        """Fit the other effects, from the values that they have."""
+        return self.searcher.fit(without(self.found, effect.key), self.fit)
 
     def holding(
         self, tests: Sequence[Callable[[Outcome], Withdrawn | None]], progress: Pace
@@ -174,7 +174,7 @@ class Outcome:
             return self
         progress(f"{gone.effect} withdrawn")
         rest = tuple(without(self.found, gone.effect))
-        model = self.searcher.fit(rest, self.fit, thorough=True, anew=True)
+        model = self.searcher.fit(rest, self.fit, thorough=True)
         less = replace(self, fit=model, found=rest, withdrawn=(*self.withdrawn, gone))
         return less.holding(tests, progress)
 
@@ -208,12 +208,7 @@ def search_and_hold(
     unsearched = searcher.fit([], thorough=True)
     if _mistaken(problem, unsearched.settings, rows):
         return Outcome(searcher, problem, rows, (), unsearched, ())
-    steps, near, effects_found = searcher.run()
-    # Where readings tell internal forces, losses go with how far they are trusted: with an effect
-    # and without it as far, and not as far as the search happened to.
-    problem = problem.without_memory()
-    searcher = replace(searcher, problem=problem)
-    model = searcher.fit(effects_found, near, thorough=True)
+    steps, model, effects_found = searcher.run()
     # The best of what would still earn its place, but with values that nobody would believe; and of
     # what would, did the readings not drift.
     last = steps[-1].trials if steps else ()

@@ -440,10 +440,6 @@ class Problem:
         given_up = self.predict.row_unknowns
         return int(np.maximum(mask.sum(axis=1) - given_up, 0).sum())
 
-    def without_memory(self) -> Problem:
-        """Return the same problem, whose model remembers nothing that was tried before."""
-        return replace(self, predict=self.predict.at(self.measured))
-
     def predicted(self, settings: Sequence[Setting]) -> Readings:
         """Return what the sensors would show with these effects."""
         return self.predict(settings, self.noise)

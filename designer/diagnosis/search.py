@@ -234,7 +234,7 @@ class Searcher:
                 instead = () if effects is before else tuple(effects)
                 steps.append(Step(tuple(trials), added, not is_over, passed_over, instead))
         effects = self._predicting(self._reconsidered(effects, present, steps), present)
-        return tuple(steps), self.fit(effects, present), tuple(effects)
+        return tuple(steps), self.fit(effects, present, thorough=True), tuple(effects)
 
     def _looked_ahead(
         self, effects: list[Effect], present: Fit, alone: Fit
@@ -441,8 +441,8 @@ class Searcher:
     ) -> list[tuple[Effect, ...]]:
         """Return the effects that the data cannot reject in place of one that was found.
 
-        Each is fitted from where a round that had the same effects left it; else from the present
-        model, and from where the first and the last round left it. It stays a rival if the fitted
+        Each is fitted from the present model, and from where the first and the last round left
+        it, unless a round has fitted it beside the same effects. It stays a rival if the fitted
         rows suit it about as well, with a penalty for its parameters or without one; or if it
         predicted unseen rows at least half as well when ``effect`` was added, and predicts them
         about as well in its place. What at first sight does less than half of what ``effect`` does
@@ -464,13 +464,11 @@ class Searcher:
                 continue
             trials = [t.fit for step in steps for t in step.trials if t.effect.key == rival.key]
             with_rest = {e.key for e in (*self.given, *rest, rival)}
-            # A round's own loss will not do: it may have trusted the readings less.
-            starts = [m for m in trials if {s.effect.key for s in m.settings} == with_rest]
-            fits = []
-            if not starts:
-                starts = [*dict.fromkeys([*trials[:1], *trials[-1:]])]
+            fits = [m for m in trials if {s.effect.key for s in m.settings} == with_rest]
+            if not fits:
+                last = dict.fromkeys([*trials[:1], *trials[-1:]])
                 fits = [self.fit([*rest, rival], present, anew=True)]
-            fits += [self.fit([*rest, rival], start) for start in starts]
+                fits += [self.fit([*rest, rival], start) for start in last]
             swapped = min(fits, key=lambda model: model.loss)
             if not swapped.is_plausible(rival):
                 continue
