@@ -36,8 +36,8 @@ _MOST_SAMPLES = 256
 """Poses in which lengths are kept, for the chosen one."""
 FEW_AT_FIRST = 128
 """Samples that candidates are tried at first where all of them take long."""
-_SOME_AT_FIRST = 2048
-"""The same where they do not."""
+_FEW_OF_QUICK = 2048
+"""The same on robots that are quick to solve."""
 _CLOSE = 0.95
 """Of the utilisation that governs: from where on other cases and directions are searched, too."""
 _MOST_ROUNDS = 6
@@ -140,7 +140,7 @@ class Cases:
         On robots that are slow to solve only where there is more than the static case.
         """
         if is_quick(self.robot):
-            return replace(self, few=_SOME_AT_FIRST)
+            return replace(self, few=_FEW_OF_QUICK)
         return replace(self, few=FEW_AT_FIRST) if len(self.each) > 1 else self
 
     @property
@@ -201,10 +201,10 @@ class Cases:
         if not shares:
             progress(self.sample_count)
         is_whole = workspace is whole_workspace
-        for candidate, sampled in solved:
+        for candidate, met in solved:
+            sampled = replace(met, is_complete=is_whole and met.is_complete)
             verification = sampled.verification(candidate.cable)
-            of_all = replace(sampled, is_complete=is_whole and sampled.is_complete)
-            yield CaseResult(whole_workspace, candidate, of_all, verification)
+            yield CaseResult(whole_workspace, candidate, sampled, verification)
 
 
 def resettled(result: CaseResult) -> CaseResult:
@@ -279,8 +279,7 @@ def searched(
 
     All of them in one batch.
     """
-    of_most = [result for c in candidates for result in _close(worst_of_each(c))]
-    completed = _completed(of_most)
+    completed = _completed([r for results in candidates for r in _close(worst_of_each(results))])
     whole = [_with(results, completed) for results in candidates]
     close = [(worst_of_each(results), governing(results)) for results in whole]
     replaced = _search([(r, r is not worst) for each, worst in close for r in _close(each)])
@@ -446,7 +445,9 @@ def steepest(
 ) -> tuple[Loaded, float]:
     """Turn wind and inertia force by ever smaller steps while something gets more severe.
 
-    Returns the direction that ends in, and the severity there; ``severity`` is where it starts.
+    Tried are all ways aside, and where all severities were highest if they were linear in the
+    direction. Returns the direction that ends in, and the severity there; ``severity`` is where it
+    starts.
     """
     step = 0.5
     while step > 1e-6:

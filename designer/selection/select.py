@@ -212,7 +212,7 @@ class _SelectionRun:
         for _, candidates in grades:
             cases = [case for c in candidates for case in c.cases if case.case.region is None]
             cases = [case for case in cases if np.isfinite(case.verification.worst_place).all()]
-            cases.sort(key=lambda case: not case.sampled.not_held)
+            cases.sort(key=lambda case: not case.sampled.not_held)  # no member may hold there
             places = dict.fromkeys(tuple(case.verification.worst_place) for case in cases)
             worst_places.append(np.reshape(list(places), (-1, workspace.space.n_coordinates)))
         return continuous_optima(workspace, of_grades, allowance, self.built, worst_places)
