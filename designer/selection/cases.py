@@ -10,6 +10,7 @@ most, and in those near it.
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -208,7 +209,12 @@ class Cases:
 
 
 def resettled(result: CaseResult) -> CaseResult:
-    """Return a case, after another worst pose, with the stiffness at the tension there."""
+    """Return a case, after another worst pose, with the stiffness at the tension there.
+
+    What was not searched between the samples has that at the tension over them.
+    """
+    if not result.verification.is_refined:
+        return result
 
     def search(results: Sequence[CaseResult]) -> Sequence[CaseResult]:
         is_refined = all(result.verification.is_refined for result in results)
@@ -317,7 +323,9 @@ def searched_all(results: Sequence[CaseResult]) -> tuple[CaseResult, ...]:
     for worst in worst_of_each(results):
         close = _close([result for result in results if result.case is worst.case])
         replaced |= _search([(result, result is not worst) for result in close])
-    return tuple(_turned(result) for result in _with(results, replaced))
+    turned = tuple(_turned(result) for result in _with(results, replaced))
+    worst_turned = [result for result in worst_of_each(turned) if _is_turned(result)]
+    return _with(turned, {result: _with_lengths(result) for result in worst_turned})
 
 
 def _with(
@@ -382,15 +390,18 @@ def _search_settled(result: CaseResult) -> CaseResult:
 
 def _turned(result: CaseResult) -> CaseResult:
     """Turn wind and inertia force to where they are worst, with the pose that goes with them."""
-    if not result.loaded.is_turned or not result.verification.is_refined:
+    if not _is_turned(result):
         return result
     return _at_their_tension([result], lambda results: list(map(_turned_once, results)))[0]
+
+
+def _is_turned(result: CaseResult) -> bool:
+    return result.loaded.is_turned and result.verification.is_refined
 
 
 def _turned_once(result: CaseResult) -> CaseResult:
     if not result.verification.is_refined:  # with another stiffness than before
         (result,) = _search_once([result], is_light=True)
-    first = result
     for _ in range(_MOST_ROUNDS):
         before, steeper = result.utilisation, _steepest(result)
         if result.loaded.keeps_lengths:  # a search for the pose takes long
@@ -403,7 +414,7 @@ def _turned_once(result: CaseResult) -> CaseResult:
         result = steeper if steeper.utilisation > before else result
         if not np.isfinite(result.utilisation) or result.utilisation <= before * (1.0 + _SAME):
             break
-    return result if result.loaded is first.loaded else _with_lengths(result)
+    return result
 
 
 def _with_worst(result: CaseResult, worst: Worst) -> CaseResult:
@@ -420,6 +431,8 @@ def _with_worst(result: CaseResult, worst: Worst) -> CaseResult:
 def _with_lengths(result: CaseResult) -> CaseResult:
     """Return a result with the lengths that its direction asks for as well, searched lightly."""
     loaded, met = result.loaded, result.verification
+    if loaded.keeps_lengths or not math.isfinite(result.utilisation):
+        return result
     start = replace(result.sampled, worst_places=met.worst_place[None])
     (lengths,) = refined_each(loaded.robot, result.workspace, [loaded.cable], [start], LIGHT)
     longest = np.maximum(met.longest_m, lengths.longest_m)

@@ -26,6 +26,7 @@ from designer.selection.cases import (
     CaseResult,
     Cases,
     governing,
+    resettled,
     searched_all,
     steepest,
     together,
@@ -155,6 +156,14 @@ def test_a_load_is_turned_to_where_a_linear_severity_is_largest(seed: int) -> No
     assert turned.inertia == pytest.approx(slope / np.linalg.norm(slope), abs=1e-6)
     assert severity == pytest.approx(np.linalg.norm(slope), rel=1e-12)
     assert tried < 60
+
+
+def test_what_was_not_searched_stays_after_a_proof() -> None:
+    workspace, cable = Workspace(BOX, samples=40), Cable(0.01, 0.5, 5e6, 6e4)
+    case = LoadCase("starting", acceleration_m_per_s2=1.0)
+    cases = Cases(FOUR, workspace, (case,)).sampled([[cable]], lambda _: None)[0]
+    assert len(cases) > 1
+    assert all(resettled(result) is result for result in cases)
 
 
 def test_all_but_slow_robots_in_one_case_hurry() -> None:
