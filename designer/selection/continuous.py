@@ -71,7 +71,6 @@ def continuous_optima(
     The worst poses of all families are sought in one batch.
     """
     built, hangs_below = built.of_products, workspace.hangs_below
-    fewer = workspace.with_fewer_samples(_SAMPLES)
 
     def worsts_of(families: Mapping[int, Material]) -> Mapping[int, Worst]:
         worsts = {}
@@ -86,8 +85,8 @@ def continuous_optima(
             each = MaterialsByPose(materials, search)
             return diameter_demand(built.robot, each, hangs_below, places, **how)
 
-        starts = [worst_places[k] for k in unsettled]
-        extremes = worst_over_samples(fewer, demand, len(materials), starts)
+        known = [worst_places[k] for k in unsettled]
+        extremes = worst_over_samples(workspace, demand, len(materials), most=_SAMPLES, known=known)
         for k, (worst,) in zip(unsettled, extremes, strict=True):
             # Where every pose is left out, nothing is served.
             left_out = worst.demand == -math.inf

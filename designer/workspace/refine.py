@@ -173,15 +173,22 @@ def refine_each_over_branches(
 
 
 def worst_over_samples(
-    workspace: Workspace, demand: Demand, count: int, known: Sequence[FloatArray] | None = None
+    workspace: Workspace,
+    demand: Demand,
+    count: int,
+    *,
+    most: int | None = None,
+    known: Sequence[FloatArray] | None = None,
 ) -> list[list[Worst]]:
-    """Return the largest of each demand over all samples, then over the region from the best.
+    """Return the largest of each demand over the samples, then over the region from the best.
 
-    For a ``count`` of searches. Starts are the samples that ask for most of the first demand, and
-    of each search the places (n, n_coordinates) in ``known``; see `refine_each_over_branches`.
+    For a ``count`` of searches; over so many samples at ``most``. Starts are those that ask for
+    most of the first demand, and of each search the places (n, n_coordinates) in ``known``; see
+    `refine_each_over_branches`.
     """
+    sampled = workspace if most is None else workspace.with_fewer_samples(most)
     pools = [Pool(workspace.space) for _ in range(count)]
-    for rows in workspace.places():
+    for rows in sampled.places():
         for first in range(0, count, size := max(_CHUNK // len(rows), 1)):
             batch = np.arange(first, min(first + size, count))
             values = demand(np.tile(rows, (len(batch), 1)), np.repeat(batch, len(rows)))

@@ -80,6 +80,16 @@ def test_one_rope_is_a_group_of_all_cables(fast_robot, workspace) -> None:
     assert not for_all(None).groups
 
 
+def test_no_point_of_a_long_list_is_left_out_of_the_optimum(fast_robot, workspace) -> None:
+    grade = rope("a", [10.0, 40.0])
+    points = workspace.region.inside_m(np.random.default_rng(8), 5000)
+    need_m = size_poses(fast_robot, Poses.at(points), grade.family(2.0)).diameter_m
+    points = points[np.roll(np.argsort(need_m), 2)]  # the second needs most
+    listed = replace(workspace, region=PointList(points))
+    optimum_m = try_grade(fast_robot, listed, grade, 2.0).continuous_diameter_m
+    assert optimum_m == pytest.approx(need_m.max(), rel=1e-9)
+
+
 def test_poses_over_the_limit_are_counted_one_by_one_as_by_the_compiled_sweep(
     fast_robot, workspace
 ) -> None:
