@@ -45,6 +45,8 @@ _MOST_ROUNDS = 6
 """Of turning the loads and searching the pose again, so that it ends."""
 _SAME = 1e-9
 """Relative gain in utilisation that is rounding."""
+_NEAR = 0.01
+"""Relative: how close searches that end at the same place come on their way."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -323,7 +325,8 @@ def searched_all(results: Sequence[CaseResult]) -> tuple[CaseResult, ...]:
     for worst in worst_of_each(results):
         close = _close([result for result in results if result.case is worst.case])
         replaced |= _search([(result, result is not worst) for result in close])
-    turned = tuple(_turned(result) for result in _with(results, replaced))
+    passed: list[CaseResult] = []
+    turned = tuple(_turned(result, passed) for result in _with(results, replaced))
     worst_turned = [result for result in worst_of_each(turned) if _is_turned(result)]
     return _with(turned, {result: _with_lengths(result) for result in worst_turned})
 
@@ -388,24 +391,32 @@ def _search_settled(result: CaseResult) -> CaseResult:
     return _with_worst(replace(result, verification=lengths, is_full=True), worst)
 
 
-def _turned(result: CaseResult) -> CaseResult:
-    """Turn wind and inertia force to where they are worst, with the pose that goes with them."""
+def _turned(result: CaseResult, passed: list[CaseResult]) -> CaseResult:
+    """Turn wind and inertia force to where they are worst, with the pose that goes with them.
+
+    ``passed`` are states that such searches have come through; one that meets another's ends there.
+    """
     if not _is_turned(result):
         return result
-    return _at_their_tension([result], lambda results: list(map(_turned_once, results)))[0]
+    search = partial(_turned_once, passed=passed)
+    return _at_their_tension([result], lambda results: list(map(search, results)))[0]
 
 
 def _is_turned(result: CaseResult) -> bool:
     return result.loaded.is_turned and result.verification.is_refined
 
 
-def _turned_once(result: CaseResult) -> CaseResult:
+def _turned_once(result: CaseResult, passed: list[CaseResult]) -> CaseResult:
     if not result.verification.is_refined:  # with another stiffness than before
         (result,) = _search_once([result], is_light=True)
+    others = tuple(passed)
     for _ in range(_MOST_ROUNDS):
         before, steeper = result.utilisation, _steepest(result)
         if result.loaded.keeps_lengths:  # a search for the pose takes long
             return governing([result, steeper])
+        if any(_is_beside(steeper, other) for other in others):
+            return governing([result, steeper])
+        passed.append(steeper)
         demand = partial(tension_demand, steeper.loaded, steeper.workspace.hangs_below)
         start = steeper.verification.worst_place[None]
         (worst,) = refine_over_branches(steeper.workspace.space, demand, start, LIGHT)
@@ -415,6 +426,29 @@ def _turned_once(result: CaseResult) -> CaseResult:
         if not np.isfinite(result.utilisation) or result.utilisation <= before * (1.0 + _SAME):
             break
     return result
+
+
+def _is_beside(result: CaseResult, other: CaseResult) -> bool:
+    """Tell whether a case is so near to another state of it that both lead to the same end."""
+    far = np.abs(result.verification.worst_place - other.verification.worst_place)
+    size = np.ptp(result.workspace.space.bounds, axis=0)
+    ours, theirs = (
+        [
+            along
+            for along in (r.loaded.wind, r.loaded.inertia, r.loaded.wrench_N)
+            if along is not None
+        ]
+        for r in (result, other)
+    )
+    return (
+        result.case is other.case
+        and math.isclose(result.utilisation, other.utilisation, rel_tol=_NEAR)
+        and bool((far <= _NEAR * size).all())
+        and all(
+            np.linalg.norm(our - their) <= _NEAR * np.linalg.norm(their)
+            for our, their in zip(ours, theirs, strict=True)
+        )
+    )
 
 
 def _with_worst(result: CaseResult, worst: Worst) -> CaseResult:
@@ -456,7 +490,7 @@ def _steepest(result: CaseResult) -> CaseResult:
 def steepest(
     loaded: Loaded, severity: float, severity_of: Callable[[Loaded], float]
 ) -> tuple[Loaded, float]:
-    """Turn wind and inertia force by ever smaller steps while something gets more severe.
+    """Turn wind and inertia force, by smaller steps where nothing gets more severe.
 
     Tried are all ways aside, and where all severities were highest if they were linear in the
     direction. Returns the direction that ends in, and the severity there; ``severity`` is where it
@@ -471,7 +505,7 @@ def steepest(
         highest, turned = max(trials, key=lambda trial: trial[0])
         gains = highest > severity
         loaded, severity = (turned, highest) if gains else (loaded, severity)
-        step *= 0.02 if turned is summit else 1.0 if gains else 0.125
+        step *= 0.02 if turned is summit else 2.0 if gains else 0.125
     return loaded, severity
 
 

@@ -112,10 +112,12 @@ def _at_place(
     criterion: Criterion, loaded: Loaded, workspace: Workspace, place: FloatArray
 ) -> Requirement | None:
     """Return a criterion at one place (n_coordinates,); None where the place does not count."""
-    quantity, statics = _quantities(loaded, workspace, [criterion], place[None])
-    if np.isnan(quantity[0]).all():
+    statics, _, counts = equilibria(loaded, workspace, place[None])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        quantity = criterion.quantity(loaded, statics)
+    if not counts.any() or np.isnan(quantity).all():
         return None
-    return _requirement(criterion, loaded, place, quantity[0][0], statics)
+    return _requirement(criterion, loaded, place, quantity[0], statics)
 
 
 def _evaluate_case(
@@ -187,32 +189,15 @@ def _severity(
     seeks_better: bool = True,
 ) -> FloatArray:
     """Return the demand (n, n_criteria) of places; minus infinite where a place does not count."""
-    quantities, _ = _quantities(loaded, workspace, criteria, places, seeks_better=seeks_better)
-    columns = [
-        np.nan_to_num(criterion.severity(quantity), nan=-np.inf).max(axis=1)
-        for criterion, quantity in zip(criteria, quantities, strict=True)
-    ]
-    return np.column_stack(columns)
-
-
-def _quantities(
-    loaded: Loaded,
-    workspace: Workspace,
-    criteria: Sequence[Criterion],
-    places: FloatArray,
-    *,
-    seeks_better: bool = True,
-) -> tuple[list[FloatArray], Statics]:
-    """Return each quantity at places (n, …), NaN where one does not count, and the equilibria."""
     statics, rows, counts = equilibria(loaded, workspace, places, seeks_better=seeks_better)
-    quantities = []
-    for criterion in criteria:
-        with np.errstate(invalid="ignore", divide="ignore"):
-            quantity = criterion.quantity(loaded, statics)
-        full = np.full((len(places), quantity.shape[1]), np.nan)
-        full[rows] = np.where(counts[:, None], quantity, np.nan)
-        quantities.append(full)
-    return quantities, statics
+    with np.errstate(invalid="ignore", divide="ignore"):
+        severities = [
+            np.fmax.reduce(criterion.severity(criterion.quantity(loaded, statics)), axis=1)
+            for criterion in criteria
+        ]
+    severity = np.full((len(places), len(criteria)), -np.inf)
+    severity[rows[counts]] = np.nan_to_num(np.column_stack(severities)[counts], nan=-np.inf)
+    return severity
 
 
 def equilibria(

@@ -44,6 +44,8 @@ _SHRINKS = 0.3
 """Of a cloud where nothing rises."""
 _SHRINKS_AT_CORNER = 0.1
 """Of a cloud about a landmark of the space where nothing rises; a turn tries a factor of 30."""
+_CLOUDS = 3
+"""Tried in one turn, each smaller by as much as where nothing rises, once climbs go to the end."""
 _MOST_ROUNDS = 8
 _NEAR_SCALES = 10.0 ** -np.arange(1.0, 8.0)
 
@@ -92,6 +94,19 @@ LIGHT = Effort(
     tolerance=1e-7,
 )
 """For demands that take long to compute."""
+_FOLLOWING = Effort(
+    per_edge=8,
+    per_face=24,
+    inside=192,
+    starts=4,
+    finalists=2,
+    revisited=1,
+    beside=2,
+    tried_beside=32,
+)
+"""For searches that know where others like them have ended."""
+_MANY, _SCOUTS = 12, 6
+"""More searches than this beside each other are made in full for so many of them alone."""
 
 
 def refine(
@@ -155,20 +170,30 @@ def refine_each_over_branches(
         differs = plain(at, search) != thorough(at, search)
         return np.unique(search[differs.reshape(len(at), -1).any(axis=1)])
 
-    def searched(demand: Demand, among: IntArray) -> list[list[Worst]]:
-        """Search anew, numbered from 0, for what has these numbers."""
+    def searched(
+        demand: Demand, among: IntArray, effort: Effort | None, known: FloatArray
+    ) -> dict[int, list[Worst]]:
+        """Search for what has these numbers: of many a few in full, which tell the others."""
         if not len(among):
-            return []
-        own_starts = [starts[k] for k in among]
-        return refine_each(space, lambda at, k: demand(at, among[k]), own_starts, effort)
+            return {}
+        is_many = effort is None and len(among) > _MANY
+        scouts = among[:: -(-len(among) // _SCOUTS)] if is_many else among
+        own_starts = [np.concatenate([starts[k], known]) for k in scouts]
+        worsts = refine_each(space, lambda at, k: demand(at, scouts[k]), own_starts, effort)
+        ends = np.concatenate([known, *map(places_of, worsts)])
+        others = searched(demand, np.setdiff1d(among, scouts), _FOLLOWING, ends)
+        return dict(zip(scouts.tolist(), worsts, strict=True)) | others
 
-    every = np.arange(len(starts))
+    def places_of(worsts: Sequence[Worst]) -> FloatArray:
+        places = np.array([worst.place for worst in worsts])
+        return np.asarray(places[np.isfinite(places).all(axis=1)])
+
+    every, nowhere = np.arange(len(starts)), np.empty((0, space.n_coordinates))
     hard = changed(starts, every)
-    easy = np.setdiff1d(every, hard)
-    extremes = dict(zip(easy.tolist(), searched(plain, easy), strict=True))
-    ends = [np.array([worst.place for worst in worsts]) for worsts in extremes.values()]
-    hard = np.union1d(hard, changed([p[np.isfinite(p).all(axis=1)] for p in ends], easy))
-    extremes |= zip(hard.tolist(), searched(thorough, hard), strict=True)
+    extremes = searched(plain, np.setdiff1d(every, hard), effort, nowhere)
+    easy = np.array(sorted(extremes), dtype=np.int64)
+    hard = np.union1d(hard, changed([places_of(extremes[k]) for k in easy.tolist()], easy))
+    extremes |= searched(thorough, hard, effort, nowhere)
     return [extremes[k] for k in every.tolist()]
 
 
@@ -391,33 +416,44 @@ class _PoseSearch:
     def _climb(self, climbs: Climbs, tolerance: float, *, slides: bool = False) -> None:
         """Climb until the clouds are smaller than the tolerance, along what does not count."""
         self._phase += 1
+        clouds = _CLOUDS if slides else 1
         is_corner = self._are_marks(climbs.at)
         for turn in range(_MOST_TURNS):
             active = np.flatnonzero((climbs.radius > tolerance) & ~self._is_over[climbs.search])
             if not len(active):
                 break
             climb, rng = climbs.part(active), self._rng(turn)
-            reach = climb.radius[:, None, None] * self._size
-            trials = self._space.nearest(climb.at[:, None] + self._directions(rng) * reach)
+            rows = np.arange(len(active))
+            shrinks = np.where(is_corner[active], _SHRINKS_AT_CORNER, _SHRINKS)
+            # Smaller clouds are tried with the first: where it has nothing, a turn is spared.
+            radii = climb.radius[:, None] * shrinks[:, None] ** np.arange(clouds)
+            directions = self._directions(rng, clouds)
+            offsets = radii[..., None, None] * (directions * self._size)
+            trials = (climb.at[:, None, None] + offsets).reshape(len(active), -1, len(self._size))
+            trials = self._space.nearest(trials)
             onward = self._space.nearest(climb.at + 2.0 * climb.step)[:, None]
             trials = np.concatenate([trials, onward], axis=1)
             demand = self._ask_about(climb, trials)
-            rises = demand.max(axis=1) > climb.value
-            outside = np.isneginf(demand)
+            first = slice(None, directions.shape[1])
+            in_cloud = demand[:, :-1].reshape(len(active), clouds, -1).max(axis=2)
+            in_cloud[:, 0] = np.maximum(in_cloud[:, 0], demand[:, -1])
+            rises = in_cloud[:, 0] > climb.value
+            outside = np.isneginf(demand[:, first])
             on_border = np.flatnonzero(slides & ~rises & outside.any(axis=1) & ~outside.all(axis=1))
             if len(on_border):
-                slid = self._slide(climb.part(on_border), trials[on_border], demand[on_border], rng)
+                around = trials[on_border, first], demand[on_border, first]
+                slid = self._slide(climb.part(on_border), *around, rng)
                 trials[on_border, -1], demand[on_border, -1] = slid
+                in_cloud[on_border, 0] = np.maximum(in_cloud[on_border, 0], slid[1])
             highest = demand.argmax(axis=1)
-            rows = np.arange(len(active))
             better = demand[rows, highest] > climb.value
             to = np.where(better[:, None], trials[rows, highest], climb.at)
             climbs.step[active] = to - climb.at
             climbs.at[active] = to
             climbs.value[active] = np.where(better, demand[rows, highest], climb.value)
             is_corner[active] &= ~better
-            shrinks = np.where(is_corner[active], _SHRINKS_AT_CORNER, _SHRINKS)
-            climbs.radius[active] = climb.radius * np.where(better, 1.1, shrinks)
+            grown = 1.1 * radii[rows, (in_cloud > climb.value[:, None]).argmax(axis=1)]
+            climbs.radius[active] = np.where(better, grown, radii[:, -1] * shrinks)
 
     def _are_marks(self, at: FloatArray) -> BoolArray:
         """Tell which places are landmarks of the space, such as its corners."""
@@ -437,7 +473,7 @@ class _PoseSearch:
 
         Where the largest demand lies on that border, the directions that lead upward and stay
         inside become few. The border's normal is the difference between the trials on either side
-        of it; moves across the normal are brought to the border along it, by search in eight parts.
+        of it; moves across the normal are brought to the border along it, by search in 16 parts.
         """
         size = np.where(self._size > 0.0, self._size, 1.0)
         reach = climbs.radius[:, None, None]
@@ -457,10 +493,10 @@ class _PoseSearch:
             places = self._space.nearest(climbs.at[:, None, None] + steps * size)
             return places, self._ask_about(climbs, places)
 
-        for _ in range(4):
-            outside_there = np.isneginf(at(low + part * np.arange(1, 8) / 8.0)[1])
-            low = low + part / 8.0 * outside_there.sum(axis=2, keepdims=True)
-            part /= 8.0
+        for _ in range(3):
+            part /= 16.0
+            outside_there = np.isneginf(at(low + part * np.arange(1, 16))[1])
+            low = low + part * outside_there.sum(axis=2, keepdims=True)
         places, demand = (values[:, :, 0] for values in at(low + part))
         highest = demand.argmax(axis=1)
         rows = np.arange(len(places))
@@ -470,15 +506,17 @@ class _PoseSearch:
         """Return the same random numbers for all searches, new ones in each turn."""
         return np.random.default_rng([2, self._phase, turn])
 
-    def _directions(self, rng: np.random.Generator) -> FloatArray:
-        """Return directions (n_trials, n_coordinates) along the axes, and random ones.
+    def _directions(self, rng: np.random.Generator, clouds: int) -> FloatArray:
+        """Return directions (n_clouds, n_trials, n_coordinates) along the axes, and random ones.
 
         Random lengths span a factor of 30, so that one turn tries several scales.
         """
         free = self._size > 0.0
         n = int(free.sum())
         trials = n * self._effort.trials
-        random = rng.uniform(-1.0, 1.0, (trials, n)) * 30.0 ** -rng.random((trials, 1))
-        directions = np.zeros((2 * n + trials, len(free)))
-        directions[:, free] = np.concatenate([np.eye(n), -np.eye(n), random])
+        random = rng.uniform(-1.0, 1.0, (clouds, trials, n))
+        random *= 30.0 ** -rng.random((clouds, trials, 1))
+        axes = np.broadcast_to([np.eye(n), -np.eye(n)], (clouds, 2, n, n)).reshape(clouds, -1, n)
+        directions = np.zeros((clouds, 2 * n + trials, len(free)))
+        directions[..., free] = np.concatenate([axes, random], axis=1)
         return directions
