@@ -37,8 +37,8 @@ _MOST_SAMPLES = 256
 """Poses in which lengths are kept, for the chosen one."""
 FEW_AT_FIRST = 128
 """Samples that candidates are tried at first where all of them take long."""
-_FEW_OF_QUICK = 2048
-"""The same on robots that are quick to solve."""
+FEW_OF_QUICK = 2048
+"""The same on robots that are quick to solve, and for the worst pose of a continuous family."""
 _CLOSE = 0.95
 """Of the utilisation that governs: from where on other cases and directions are searched, too."""
 _MOST_ROUNDS = 6
@@ -143,7 +143,7 @@ class Cases:
         On robots that are slow to solve only where there is more than the static case.
         """
         if is_quick(self.robot):
-            return replace(self, few=_FEW_OF_QUICK)
+            return replace(self, few=FEW_OF_QUICK)
         return replace(self, few=FEW_AT_FIRST) if len(self.each) > 1 else self
 
     @property

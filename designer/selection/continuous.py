@@ -15,6 +15,7 @@ from designer.model.cable import Material, MaterialsByPose
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
+from designer.selection.cases import FEW_OF_QUICK
 from designer.selection.efficiency import Allowance
 from designer.sizing.newton import size_poses
 from designer.workspace.demand import diameter_demand
@@ -25,8 +26,6 @@ _MOST_TURNS = 20
 """Of the fixed point, so that it ends: the need falls steeply, so a few turns reach it."""
 _STILL = 1e-7
 """Relative change of the diameter at which it is taken to stay: far below what can be bought."""
-_SAMPLES = 2048
-"""That a search for the worst pose of a family starts from, beside the worst of its sizes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,7 +85,9 @@ def continuous_optima(
             return diameter_demand(built.robot, each, hangs_below, places, **how)
 
         known = [worst_places[k] for k in unsettled]
-        extremes = worst_over_samples(workspace, demand, len(materials), most=_SAMPLES, known=known)
+        extremes = worst_over_samples(
+            workspace, demand, len(materials), most=FEW_OF_QUICK, known=known
+        )
         for k, (worst,) in zip(unsettled, extremes, strict=True):
             # Where every pose is left out, nothing is served.
             left_out = worst.demand == -math.inf

@@ -156,7 +156,7 @@ def refine_each_over_branches(
     a search does without, and its results are computed again with it: a better branch asks for
     less, so that a largest diameter or tension stands if it stands there. If anything has changed,
     the whole search is made again with it. The demand takes ``seeks_better``, whether to look for
-    them.
+    them. Of more than twelve searches six are made in full, and the others from their ends as well.
     """
     plain, thorough = (partial(demand, seeks_better=seeks) for seeks in (False, True))
 
