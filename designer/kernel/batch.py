@@ -71,6 +71,7 @@ def solve_batch(
     *,
     sag_max: float | None = None,
     is_thorough: bool = False,
+    is_open: bool = False,
     rates_branches: bool = True,
 ) -> Solution:
     """Solve the statics of poses (n_poses,), or size the cables if no weight is given.
@@ -88,6 +89,8 @@ def solve_batch(
         Largest sag over chord; of a robot that leaves no choice it is not regarded.
     is_thorough : bool
         Whether to look for other branches as well, which takes a thousand times as long.
+    is_open : bool
+        Whether it is known that without other branches none of the poses has an answer.
     rates_branches : bool
         Whether to estimate what they could gain, which takes twice as long as to solve the poses.
 
@@ -116,7 +119,9 @@ def solve_batch(
         np.empty((count, n, 3)), np.empty((count, 5)), np.empty(count, dtype=np.int8)
     )
     asked = situation, figures, plain(inverse_weight.reshape(-1)), out
-    if robot.is_redundant:
+    if is_open:
+        out.cables[:], out.poses[:], out.verdict[:] = np.nan, np.nan, answer.NOT_CONVERGED
+    elif robot.is_redundant:
         share_out(solve_redundant_range, count, _SLOW_SHARE, *asked)
     else:
         share_out(solve_range, count, _SHARE, *asked)

@@ -61,13 +61,13 @@ class Cone(NamedTuple):
 
     Parameters
     ----------
-    rays : array (2 n, m)
-        Unit rays: those of the straight cables, then those of forces straight down.
+    rays : array (n_rays, m)
+        Unit rays; here those of the straight cables, then those of forces straight down.
     load, rest : array (m,)
         What is to be reached, and what is left of it: the separating wrench.
-    share, trial : array (2 n,)
+    share, trial : array (n_rays,)
         Of each ray, before and in a turn.
-    used : array (2 n,)
+    used : array (n_rays,)
         The rays in use, in the order in which they came.
     basis : array (m + 1, m)
         Orthonormal basis of those rays.
@@ -86,15 +86,15 @@ class Cone(NamedTuple):
 
 
 @inner
-def new_cone(m: int, n: int) -> Cone:
-    """Return the arrays for n cables and m balanced components."""
+def new_cone(m: int, n_rays: int) -> Cone:
+    """Return the arrays for so many rays and m balanced components."""
     return Cone(
-        np.zeros((2 * n, m)),
+        np.zeros((n_rays, m)),
         np.zeros(m),
         np.zeros(m),
-        np.zeros(2 * n),
-        np.zeros(2 * n),
-        np.zeros(2 * n, dtype=np.int64),
+        np.zeros(n_rays),
+        np.zeros(n_rays),
+        np.zeros(n_rays, dtype=np.int64),
         np.zeros((m + 1, m)),
         np.zeros((m + 1, m + 2)),
     )
@@ -119,7 +119,7 @@ def refuse_range(
     """
     n = situation.attachments.shape[0]
     pose = new_pose(situation, figures)
-    cone = new_cone(situation.rows.size, n)
+    cone = new_cone(situation.rows.size, 2 * n)
     for at in range(start, stop):
         place(pose, situation, figures, at)
         out_verdict[at] = NOT_CONVERGED
@@ -152,10 +152,10 @@ def _set_rays(pose: Pose, cone: Cone) -> bool:
             cone.rays[n + i, k] = -c[LIFT + rows[k], i]
             cone.load[k] -= c[LEAST, i] / pose.scale[SIZE] * cone.rays[i, k]
     for i in range(n):
-        _normalise(cone.rays[n + i])
-        if not 0.0 < _normalise(cone.rays[i]) < np.inf:
+        normalise(cone.rays[n + i])
+        if not 0.0 < normalise(cone.rays[i]) < np.inf:
             return False
-    return 0.0 < _normalise(cone.load) < np.inf
+    return 0.0 < normalise(cone.load) < np.inf
 
 
 @inner
@@ -167,7 +167,7 @@ def _along(a: FloatArray, b: FloatArray) -> float:
 
 
 @inner
-def _normalise(vector: FloatArray) -> float:
+def normalise(vector: FloatArray) -> float:
     """Bring a vector to unit length, unless it has none; return what it had."""
     size = math.sqrt(_along(vector, vector))
     for q in range(vector.size):
@@ -188,7 +188,7 @@ def _spans(cone: Cone, n: int) -> bool:
                 copy(cone.rest, cone.basis[k])
         if not best > _RANK:
             return False
-        _normalise(cone.basis[k])
+        normalise(cone.basis[k])
     return True
 
 
@@ -204,12 +204,19 @@ def _clear(vector: FloatArray, basis: FloatArray, count: int) -> float:
 
 
 @inner
-def _reach(cone: Cone, n_rays: int) -> bool:
-    """Find the point of the first rays' cone that is nearest to the load; False if that fails."""
-    rays, share, used = cone.rays, cone.share, cone.used
-    share[:] = 0.0
+def restart(cone: Cone) -> None:
+    """Use no ray."""
+    cone.share[:] = 0.0
     copy(cone.load, cone.rest)
-    count = 0
+
+
+@inner
+def reach(cone: Cone, n_rays: int, count: int) -> int:
+    """Find the point of the first rays' cone that is nearest to the load.
+
+    From where `count` rays are in use; returns how many then are, -1 if it fails.
+    """
+    rays, share, used = cone.rays, cone.share, cone.used
     for _ in range(_MOST_TURNS + n_rays):
         best, entering = _ENTERS, -1
         for j in range(n_rays):
@@ -217,14 +224,14 @@ def _reach(cone: Cone, n_rays: int) -> bool:
             if gain > best and share[j] == 0.0:
                 best, entering = gain, j
         if entering < 0:
-            return True
+            return count
         if count == cone.rest.size:
-            return False
+            return -1
         used[count] = entering
         count = _settle(cone, count + 1)
         if count < 0:
-            return False
-    return False
+            return -1
+    return -1
 
 
 @inner
@@ -262,7 +269,7 @@ def _project(cone: Cone, count: int) -> bool:
         copy(cone.rays[cone.used[k]], basis[k])
         if not _clear(basis[k], basis, k) > _RANK:
             return False
-        _normalise(basis[k])
+        normalise(basis[k])
     for k in range(count):
         for j in range(k, count):
             triangle[k, j] = _along(basis[k], cone.rays[cone.used[j]])
@@ -283,9 +290,10 @@ def _separation(cone: Cone, n_rays: int) -> float:
 
     Both of unit length; 0 where the load is not proved to lie outside.
     """
-    if not _reach(cone, n_rays):
+    restart(cone)
+    if reach(cone, n_rays, 0) < 0:
         return 0.0
-    if not _normalise(cone.rest) > 0.0:
+    if not normalise(cone.rest) > 0.0:
         return 0.0
     largest = _ROUNDING
     for j in range(n_rays):

@@ -56,7 +56,11 @@ from designer.kernel.table import CHORD, LIFT, SHARE, STRAIGHT, STRENGTH, T_P, V
 
 START_OF_STRAIGHT = 0.8
 """Of what straight cables reach, to begin with: sag takes its part."""
-_MOST_ITERATIONS = 80
+MOST_ITERATIONS = 80
+PATIENCE = 25
+"""Steps with an inverse weight below zero in a row after which a start is given up, of a pose that
+nothing has held yet. Random poses that were held by some start, 14, were so by one that needed
+fewer."""
 _START_PULL = 0.5
 _CARRIED = 0.5
 # Room above the smallest pull and first barrier: well inside, as far as scaled quantities go.
@@ -132,10 +136,13 @@ def pull_straight(pose: Pose, ask: Ask, s: float) -> None:
 
 
 @inner
-def climb(pose: Pose, ask: Ask, s: float, keep: float, scratch: Scratch) -> tuple[float, float]:
+def climb(
+    pose: Pose, ask: Ask, s: float, keep: float, patience: int, scratch: Scratch
+) -> tuple[float, float]:
     """Start from the pulls in `pose` and a guess of s; return s and how far it is from optimal.
 
-    No pull falls below `keep` times what it was in a step.
+    No pull falls below `keep` times what it was in a step. It gives up when an inverse weight that
+    is sought has been below zero for more steps than the `patience`.
     """
     c, n = pose.cables, pose.cables.shape[1]
     bend(pose)
@@ -146,14 +153,16 @@ def climb(pose: Pose, ask: Ask, s: float, keep: float, scratch: Scratch) -> tupl
         c[MU_ROOM, i] = _START_BARRIER / c[ROOM, i]
         c[MU_HEIGHT, i] = _START_BARRIER / c[HEIGHT, i]
     scratch.dual[:] = 0.0
-    gap = np.inf
-    for iteration in range(_MOST_ITERATIONS):
+    gap, below = np.inf, 0
+    for iteration in range(MOST_ITERATIONS):
         if iteration > 0:
             bend(pose)
             choose_bounds(pose, ask.c_0 + s * ask.c_s)
         unbalanced = _balance(pose, ask, s, scratch)
         gap = _gap(pose, ask, s, scratch)
-        is_last = iteration == _MOST_ITERATIONS - 1  # no step without closing the cables again
+        below = below + 1 if s < 0.0 and ask.c_s > 0.0 else 0
+        # No step without closing the cables again.
+        is_last = iteration == MOST_ITERATIONS - 1 or below > patience
         if is_last or (gap < _OPTIMAL and unbalanced < _BALANCED):
             break
         mean = 0.0

@@ -225,25 +225,36 @@ def _lowest_tension(
 
 @element
 def settled_length(c: FloatArray, i: int, p: float) -> float:
-    """Return the length that closes the cable at this pull.
+    """Return the length that closes the cable at this pull."""
+    return _closing_length(p, c[X2, i], c[D, i], c[KAPPA, i])
 
-    Starts from the inextensible cable, and solves the closure by Newton.
-    """
-    theta, kappa = 0.5 / p, c[KAPPA, i]
-    straight = np.sqrt(c[D, i] ** 2 + c[X2, i] * (1.0 + theta * theta * sag_series(theta * theta)))
+
+@element
+def _closing_length(p: float, X2: float, D: float, kappa: float) -> float:
+    """Start from the inextensible cable, and solve the closure by Newton."""
+    theta = 0.5 / p
+    straight = np.sqrt(D**2 + X2 * (1.0 + theta * theta * sag_series(theta * theta)))
     length = straight / (1.0 + kappa * p * straight)
     for _ in range(3):
-        F, _, F_l, _, _, _, _, _, _ = unit_cable(p, length, c[X2, i], c[D, i], kappa)
+        F, _, F_l, _, _, _, _, _, _ = unit_cable(p, length, X2, D, kappa)
         length -= F / F_l
     return float(length)
+
+
+@inner
+def _settle(
+    p: FloatArray, X2: FloatArray, D: FloatArray, kappa: FloatArray, length: FloatArray
+) -> None:
+    """Close each cable at its pull: rows of their own, so that it vectorises."""
+    for i in range(length.size):
+        length[i] = _closing_length(p[i], X2[i], D[i], kappa[i])
 
 
 @inner
 def bend(pose: Pose) -> None:
     """Close each cable at its present pull; first and second slopes along the closure."""
     c = pose.cables
-    for i in range(c.shape[1]):
-        c[L, i] = settled_length(c, i, c[P, i])
+    _settle(c[P], c[X2], c[D], c[KAPPA], c[L])
     linearise(pose)
     for i in range(c.shape[1]):
         step = _ALONG * c[P, i]

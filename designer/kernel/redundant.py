@@ -25,6 +25,7 @@ from designer.kernel.answer import NOT_CONVERGED, OUTSIDE_HULL, RANK_DEFICIENT, 
 from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.interior import (
+    PATIENCE,
     START_OF_STRAIGHT,
     Scratch,
     climb,
@@ -139,7 +140,7 @@ def solve_redundant_range(
             if verdict != SOLVED:
                 s = START_OF_STRAIGHT * straight_c if sizing else -1.0
                 pull_straight(pose, ask, s)
-                s, gap = climb(pose, ask, s, keep, scratch)
+                s, gap = climb(pose, ask, s, keep, PATIENCE, scratch)
                 c = (ask.c_0 + s * ask.c_s) / to_scaled
                 verdict = store(out, at, pose, c, gap, straight_c, sizing)
 

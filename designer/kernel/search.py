@@ -9,15 +9,9 @@ there if it is better and its residuals say that it holds; the search proves not
 not find. Of 2265 random poses of random robots 13 ended more than 0.1 % thicker than the best of
 300 random starts, the worst by a half.
 
-What it does prove is that **no finite cable** holds a pose. For any wrench y whose product with
-the load is not negative, and cables as strong as they are,
-
-    0 ≤ c y · load = Σᵢ y · Wᵢ(pᵢ) ≤ Σᵢ max gᵢ,    gᵢ(p) = y · Wᵢ(p) = α p + β v(p),
-
-the maximum taken over every pull that the cable's strength bears, so a sum below zero leaves no c,
-whatever the section and the internal forces. Neither v nor g is concave; the maximum is bounded
-part by part of the range, from the ends of each part, with a margin.
-The wrench is where the search ended. It is evaluated in doubles, with a margin.
+Before any start it is tried to prove that **no finite cable** holds a pose that is to be sized, by
+`designer.kernel.relaxation`; of what is left open after it, all starts are tried, each until it has
+an end or is given up.
 """
 
 from __future__ import annotations
@@ -27,8 +21,16 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.kernel.answer import FORCE_X, LOAD_FACTOR, NO_FINITE_CABLE, SOLVED, WEIGHT, Answers
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, inner, kernel
-from designer.kernel.interior import START_OF_STRAIGHT, climb, new_scratch, pull_straight
+from designer.kernel.compiling import inner, kernel
+from designer.kernel.interior import (
+    MOST_ITERATIONS,
+    PATIENCE,
+    START_OF_STRAIGHT,
+    Scratch,
+    climb,
+    new_scratch,
+    pull_straight,
+)
 from designer.kernel.linear import copy, solve_small
 from designer.kernel.pose import (
     FORCE,
@@ -37,19 +39,24 @@ from designer.kernel.pose import (
     UNIT,
     Ask,
     Pose,
-    along,
     asked,
     limit_sag,
     new_pose,
     place,
-    settled_length,
     smallest_pull,
     store,
 )
 from designer.kernel.redundant import KEPT_PULLS, massless
+from designer.kernel.relaxation import (
+    HALVINGS,
+    hanging,
+    is_proved_by,
+    misses_loads,
+    new_body,
+    pulls_borne,
+)
 from designer.kernel.simplex import new_programme
-from designer.kernel.table import CHORD, KAPPA, LEVEL, LIFT, SHARE, STRAIGHT, STRENGTH, X2, D, P
-from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
+from designer.kernel.table import CHORD, LEVEL, LIFT, SHARE, STRAIGHT, X2, D, P
 
 _RANDOM_STARTS = 6
 _RANDOM_BESIDE = 12
@@ -63,14 +70,9 @@ _HANGS_DEEP = 0.2
 _LIGHT = 0.1
 """Scaled inverse weight to start from where straight cables hold nothing."""
 _BETTER = 1e-7
-_SURELY = 1e-9
+_SURELY = 1e-8
 _NOTHING = 1e-300
-_PARTS = 300
-_MARGIN = 1e-3
-"""Of what is bounded part by part: within a part the lift may leave its ends by their square."""
 _ABOVE_LEAST = 1.1
-_SHORTER = 0.7
-_HALVINGS = 40
 
 
 @kernel
@@ -122,9 +124,8 @@ def search_range(
     pose = new_pose(situation, figures)
     lp = new_programme(m, n)
     scratch = new_scratch(m, n)
-    pulls, lifts = np.empty((n, _PARTS + 1)), np.empty((n, _PARTS + 1))
+    body = new_body(m, n)
     sizing = inverse_weight[0] < 0.0
-    keep_cables, keep_pose = np.empty((n, 3)), np.empty(out.poses.shape[1])
     for at in range(start, stop):
         place(pose, situation, figures, at)
         straight_c, spans = massless(pose, lp)
@@ -136,44 +137,56 @@ def search_range(
         best = -np.inf
         if out.verdict[at] == SOLVED:
             best = to_scaled / out.poses[at, WEIGHT] if sizing else -out.poses[at, LOAD_FACTOR]
+        elif out.verdict[at] == NO_FINITE_CABLE or (sizing and misses_loads(pose, body)):
+            out.verdict[at] = NO_FINITE_CABLE
+            continue
         state = np.uint64(_RANDOM_SEED)
-        is_proved = best == -np.inf and straight_c > 0.0 and _point_bounds(pose)
-        pulls[0, 0] = 0.0  # to be divided when first a start fails
+        # Of redundant cables the first two have been tried where nothing was found.
+        first = 2 if best == -np.inf and straight_c > 0.0 and n > m else 0
         n_starts = n + 3 + _RANDOM_STARTS
-        for attempt in range(n_starts + 2 * n + _RANDOM_BESIDE):
-            if best == -np.inf and (is_proved or attempt >= n_starts):
-                # Nor does the section that is asked for hold then, within its strength.
-                out.verdict[at] = NO_FINITE_CABLE if is_proved and sizing else out.verdict[at]
-                break
+        for attempt in range(first, n_starts + 2 * n + _RANDOM_BESIDE):
             if attempt < n_starts:
                 s, state = _begin(pose, ask, straight_c, attempt, state)
-            else:
+            elif best > -np.inf:
                 s, state = _begin_beside(pose, ask, best, out, at, attempt - n_starts, state)
-            s, gap = climb(pose, ask, s, KEPT_PULLS[1 if attempt == 1 else 0], scratch)
-            is_optimal = gap <= OPTIMAL_WITHIN
-            if best == -np.inf and not (is_optimal and (s > 0.0 or not sizing)):
-                for k in range(m):
-                    scratch.value[k] = -scratch.dual[k]
-                is_proved = _bounds(pose, scratch.value, pulls, lifts)
-            if not is_optimal or not (s > best + _BETTER * abs(s) or best == -np.inf):
-                continue
-            _copy_answer(out.cables[at], out.poses[at], keep_cables, keep_pose)
-            before = out.verdict[at]
-            c = (ask.c_0 + s * ask.c_s) / to_scaled
-            if store(out, at, pose, c, gap, straight_c, sizing) == SOLVED:
-                best = s
             else:
-                _copy_answer(keep_cables, keep_pose, out.cables[at], out.poses[at])
-                out.verdict[at] = before
+                break
+            if np.isnan(s):
+                continue
+            keep = KEPT_PULLS[1 if attempt == 1 else 0]
+            best = _better(pose, ask, s, keep, scratch, straight_c, best, out, at)
+            # Nor does the section that is asked for hold then, within its strength.
+            is_failed = best == -np.inf and not sizing
+            if is_failed and is_proved_by(pose, body, scratch.dual, attempt > first):
+                break
 
 
-@element
-def _copy_answer(
-    cables: FloatArray, pose: FloatArray, to_cables: FloatArray, to_pose: FloatArray
-) -> None:
-    for i in range(cables.shape[0]):
-        copy(cables[i], to_cables[i])
-    copy(pose, to_pose)
+@inner
+def _better(
+    pose: Pose,
+    ask: Ask,
+    s: float,
+    keep: float,
+    scratch: Scratch,
+    straight_c: float,
+    best: float,
+    out: Answers,
+    at: int,
+) -> float:
+    """Climb from the pulls in `pose` and a guess of s; store what is better and return the best."""
+    patience = PATIENCE if best == -np.inf else MOST_ITERATIONS
+    s, gap = climb(pose, ask, s, keep, patience, scratch)
+    if not gap <= OPTIMAL_WITHIN or not (s > best + _BETTER * abs(s) or best == -np.inf):
+        return best
+    before, of_pose, of_cables = out.verdict[at], out.poses[at].copy(), out.cables[at].copy()
+    c = (ask.c_0 + s * ask.c_s) / (pose.scale[SIZE] / pose.scale[FORCE])
+    if store(out, at, pose, c, gap, straight_c, ask.c_s > 0.0) == SOLVED:
+        return s
+    out.verdict[at] = before
+    copy(of_pose, out.poses[at])
+    for i in range(of_cables.shape[0]):
+        copy(of_cables[i], out.cables[at, i])
+    return best
 
 
 @inner
@@ -182,8 +195,8 @@ def _begin(
 ) -> tuple[float, np.uint64]:
     """Set the pulls that an attempt starts from; return the guess of s and the next random state.
 
-    First twice straight cables, then one cable after the other hanging, then all cables with half
-    of their pull, then random ones.
+    First twice straight cables, then one cable after the other hanging, NaN for one that hung
+    before; then all cables with half of their pull, then random ones.
     """
     c = pose.cables
     n = c.shape[1]
@@ -192,7 +205,10 @@ def _begin(
         s = -1.0
     pull_straight(pose, ask, s)
     if attempt >= 2 and attempt < n + 2:
+        before = c[P, attempt - 2]
         _slacken(pose, ask, s, attempt - 2, _HANGS)
+        if c[P, attempt - 2] == before:
+            s = np.nan
     elif attempt == n + 2:
         for i in range(n):
             _slacken(pose, ask, s, i, max(0.5 * c[P, i], _HANGS))
@@ -262,7 +278,7 @@ def _point_bounds(pose: Pose) -> bool:
         return False
     least, largest = 0.0, np.inf
     for i in range(n):
-        low, high = _range(pose, i)
+        low, high = pulls_borne(pose, i, HALVINGS)
         share = max(c[STRAIGHT, i], _NOTHING) / (c[SHARE, i] * c[CHORD, i])
         least = max(least, low / share)
         largest = min(largest, high / share)
@@ -271,91 +287,7 @@ def _point_bounds(pose: Pose) -> bool:
     lift_of_all, size = 0.0, 0.0
     for i in range(n):
         share = max(c[STRAIGHT, i], _NOTHING) / (c[SHARE, i] * c[CHORD, i])
-        up = c[SHARE, i] * _lift_and_top(c, i, largest * share)[0]
+        up = c[SHARE, i] * hanging(c, i, largest * share)[0]
         lift_of_all += up
         size += abs(up)
     return bool(lift_of_all < -_SURELY * size)
-
-
-@inner
-def _bounds(pose: Pose, value: FloatArray, pulls: FloatArray, lifts: FloatArray) -> bool:
-    """Tell whether a wrench proves that no c above zero is left.
-
-    Pulls and lifts (n, parts + 1) are the same for all wrenches; they are filled where the first
-    pull is zero.
-    """
-    of_load = 0.0
-    for k in range(value.size):
-        of_load += value[k] * pose.load[pose.rows[k]]
-    if not of_load >= 0.0:
-        return False
-    if pulls[0, 0] == 0.0:
-        _divide(pose, pulls, lifts)
-    total, size = 0.0, 0.0
-    for i in range(pose.cables.shape[1]):
-        factor = pose.cables[SHARE, i] / pose.scale[FORCE]
-        alpha = along(pose, value, LEVEL, i) * factor
-        beta = along(pose, value, LIFT, i) * factor
-        largest, p, up = -np.inf, pulls[i, 0], lifts[i, 0]
-        for j in range(1, _PARTS + 1):
-            before, p_before, p, up = up, p, pulls[i, j], lifts[i, j]
-            bound = max(alpha * p_before, alpha * p) + max(beta * before, beta * up)
-            largest = max(largest, bound)
-        total += largest
-        size += abs(largest)
-    return bool(total < -_MARGIN * size)
-
-
-@inner
-def _divide(pose: Pose, pulls: FloatArray, lifts: FloatArray) -> None:
-    """Divide all pulls that the strength of each cable bears into parts; lifts (n, parts + 1)."""
-    for i in range(pose.cables.shape[1]):
-        low, high = _range(pose, i)
-        ratio = (high / low) ** (1.0 / _PARTS)
-        for j in range(_PARTS + 1):
-            pulls[i, j], lifts[i, j] = low, _lift_and_top(pose.cables, i, low)[0]
-            low *= ratio
-
-
-@inner
-def _lift_and_top(c: FloatArray, i: int, p: float) -> tuple[float, float]:
-    """Return the upward pull and the top tension of a cable at a pull."""
-    length = settled_length(c, i, p)
-    _, _, _, v, _, _, t, _, _ = unit_cable(p, length, c[X2, i], c[D, i], c[KAPPA, i])
-    return v, t
-
-
-@inner
-def _range(pose: Pose, i: int) -> tuple[float, float]:
-    """Return pulls between which lie all those that the strength bears.
-
-    Somewhere a cable is parallel to its chord, and there its tension is pull times chord. From that
-    bound downward: the top tension falls, and once the cable is slack it rises.
-    """
-    c = pose.cables
-    strength = c[STRENGTH, i]
-    high = strength / c[CHORD, i]
-    low = high
-    while low > PULL_FLOOR and _lift_and_top(c, i, low)[1] > strength:
-        low *= _SHORTER
-    if low <= PULL_FLOOR:
-        return PULL_FLOOR, high
-    borne = low
-    for _ in range(_HALVINGS):
-        p = 0.5 * (borne + high)
-        if _lift_and_top(c, i, p)[1] > strength:
-            high = p
-        else:
-            borne = p
-    slack = borne
-    while low > PULL_FLOOR and _lift_and_top(c, i, low)[1] <= strength:
-        slack = low
-        low *= _SHORTER
-    low = max(low, PULL_FLOOR)
-    for _ in range(_HALVINGS):
-        p = 0.5 * (slack + low)
-        if _lift_and_top(c, i, p)[1] > strength:
-            low = p
-        else:
-            slack = p
-    return low, high

@@ -123,6 +123,7 @@ def _solve_over_pulleys(
     *,
     is_thorough: bool,
     rates_branches: bool,
+    is_open: bool = False,
     turns: int = _FEW_TURNS,
 ) -> tuple[Solution, PulleyRun]:
     """Solve with a few turns, and those poses that have not come to rest again with more."""
@@ -140,6 +141,7 @@ def _solve_over_pulleys(
             task.inverse_weight_m_per_N,
             sag_max=task.sag_max,
             is_thorough=is_thorough,
+            is_open=is_open,
             rates_branches=rates_branches,
         )
         if robot.pulley_radius_m == 0.0:  # no cable leaves at an angle that matters
@@ -201,14 +203,19 @@ def _try_other_branches(
 
     Writes what is better into the solution and the run of the cables.
     """
-    at = np.flatnonzero(
-        among & (are_open(solution.verdict) | (solution.potential > _WORTH_A_SEARCH))
-    )
+    is_open = are_open(solution.verdict)
+    at = np.flatnonzero(among & (is_open | (solution.potential > _WORTH_A_SEARCH)))
     if len(at) == 0 or np.any(task.inverse_weight_m_per_N == 0.0):
         return
     poses = flat.part(at)
     again, its_run = _solve_over_pulleys(
-        robot, poses, task.part(at), is_thorough=True, rates_branches=False, turns=1
+        robot,
+        poses,
+        task.part(at),
+        is_thorough=True,
+        is_open=robot.pulley_radius_m == 0.0 and bool(is_open[at].all()),
+        rates_branches=False,
+        turns=1,
     )
     solved = again.verdict == Verdict.SOLVED
     if task.inverse_weight_m_per_N is None:

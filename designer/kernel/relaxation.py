@@ -1,0 +1,284 @@
+"""That **no finite cable** holds a pose, whatever the section and the internal forces: a proof.
+
+Strength leaves each cable a range of pulls p, and with them its lift v is given. Let pull and lift
+be anything in the convex hull of what they can be: what the cables then can do is a convex body.
+If c · load meets it for no c ≥ 0, no cable holds the pose, and some wrench y tells them apart:
+
+    y · load ≥ 0,    Σᵢ max gᵢ < 0,    gᵢ(p) = y · Wᵢ(p) = α p + β v(p)
+
+It is sought from the body's points: of those found so far the mixture nearest to the loads leaves a
+rest, the next y, and the point farthest along y is the next (Wolfe, Finding the nearest point in a
+polytope, Mathematical Programming 11 (1976)). Where this ends without a proof, the hull may be too
+wide, of cables that could either hang or be pulled tight: the range of the cable whose lift is
+farthest from its own is cut in two, and each part is to be proved, up to some number of parts.
+
+Whoever found y, the sum is bounded from above. Neither v nor g is concave or convex: the maximum of
+g is bounded piece by piece of the range, by the ends of each and, where v bends down between them,
+by the tangents at both, which are nowhere above the larger end by more than a quarter of the
+piece times their difference in slope. In doubles, with a margin.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray
+from designer.kernel.compiling import element, inner
+from designer.kernel.cone import Cone, new_cone, normalise, reach, restart
+from designer.kernel.pose import FORCE, Pose, along
+from designer.kernel.table import CHORD, KAPPA, LEVEL, LIFT, SHARE, STRENGTH, X2, D
+from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
+
+_PIECES = 64
+_MARGIN = 1e-3
+"""Of what is bounded piece by piece: a lift may bend both ways in one."""
+_MOST_PARTS = 16
+_MOST_TURNS = 40
+_STILL = 1e-3
+"""Of the squared distance from the loads: what a further point has to bring it nearer by."""
+_NEAR = 1e-4
+"""Scaled distance from the loads below which there is no proof."""
+_LEAST_PART = 0.1
+"""Of the pieces of a range, in each of the two that it is cut into."""
+_SHORTER = 0.7
+HALVINGS = 40
+_FEW_HALVINGS = 12
+"""Where the range may be a little wider than what the strength bears."""
+
+
+class Body(NamedTuple):
+    """Arrays for what the cables can do.
+
+    Parameters
+    ----------
+    pulls, lifts, bulges : array (n, pieces + 1)
+        Ends of the pieces of each cable's range, and how much the lift may exceed both ends of the
+        piece before, or fall short of them.
+    cone : Cone
+        First the loads, turned round, then the points that were found; with a one each, of which
+        the mixture is to have one in all.
+    ends : array (1 + turns, n)
+        Which ends of pieces each point is made of.
+    cuts : array (most parts, 2, n)
+        First and last end of the ranges in each part that is yet to be proved.
+    wrench : array (m,)
+        What may tell them apart.
+    """
+
+    pulls: FloatArray
+    lifts: FloatArray
+    bulges: FloatArray
+    cone: Cone
+    ends: IntArray
+    cuts: IntArray
+    wrench: FloatArray
+
+
+@inner
+def new_body(m: int, n: int) -> Body:
+    """Return the arrays for n cables in m equations."""
+    return Body(
+        np.zeros((n, _PIECES + 1)),
+        np.zeros((n, _PIECES + 1)),
+        np.zeros((n, _PIECES + 1)),
+        new_cone(m + 1, 1 + _MOST_TURNS),
+        np.zeros((1 + _MOST_TURNS, n), dtype=np.int64),
+        np.zeros((_MOST_PARTS + 1, 2, n), dtype=np.int64),
+        np.zeros(m),
+    )
+
+
+@inner
+def misses_loads(pose: Pose, body: Body) -> bool:
+    """Tell whether it is proved that no c above zero is left."""
+    _divide(pose, body)
+    parts = 1
+    for _ in range(_MOST_PARTS):
+        n_points = _approach(pose, body, body.cuts[parts - 1])
+        if n_points == 0:
+            parts -= 1
+        elif _cut(pose, body, parts - 1, n_points):
+            parts += 1
+        else:
+            return False
+        if parts == 0:
+            return True
+    return False
+
+
+@inner
+def is_proved_by(pose: Pose, body: Body, dual: FloatArray, is_divided: bool) -> bool:
+    """Tell whether the multipliers that a start ended with prove it; divides first if need be."""
+    if not is_divided:
+        _divide(pose, body)
+    for k in range(dual.size):
+        body.wrench[k] = -dual[k]
+    return normalise(body.wrench) < np.inf and _is_apart(pose, body, body.cuts[0], 1)
+
+
+@inner
+def _approach(pose: Pose, body: Body, cut: IntArray) -> int:
+    """Bring a mixture of points of a part near to the loads; return how many, 0 for a proof."""
+    cone, wrench = body.cone, body.wrench
+    m = wrench.size
+    cone.load[:], cone.rays[0] = 0.0, 0.0
+    cone.load[m] = 1.0
+    for k in range(m):
+        wrench[k] = pose.load[pose.rows[k]]
+        cone.rays[0, k] = -wrench[k]
+    normalise(cone.rays[0])
+    restart(cone)
+    in_use = 0
+    for turn in range(1, 1 + _MOST_TURNS):
+        if _is_apart(pose, body, cut, turn):
+            return 0
+        ahead = 0.0
+        for k in range(m + 1):
+            ahead += cone.rest[k] * cone.rays[turn, k]
+        normalise(cone.rays[turn])
+        in_use = reach(cone, turn + 1, in_use)
+        far = 0.0
+        for k in range(m + 1):
+            far += cone.rest[k] ** 2
+        if in_use < 0 or (turn > 1 and ahead < _STILL * far) or far < _NEAR**2:
+            return turn + 1
+        for k in range(m):
+            wrench[k] = cone.rest[k]
+        normalise(wrench)
+    return 1 + _MOST_TURNS
+
+
+@inner
+def _is_apart(pose: Pose, body: Body, cut: IntArray, at: int) -> bool:
+    """Tell whether a wrench proves that a part misses the loads; write its farthest point `at`."""
+    value, point, m = body.wrench, body.cone.rays[at], body.wrench.size
+    of_load, size_of_load = 0.0, 0.0
+    for k in range(m):
+        of_load += value[k] * pose.load[pose.rows[k]]
+        size_of_load += pose.load[pose.rows[k]] ** 2
+    if of_load <= 0.0:  # to rounding: it must not be less
+        for k in range(m):
+            value[k] += (1e-15 - 2.0 * of_load) * pose.load[pose.rows[k]] / size_of_load
+    point[:] = 0.0
+    point[m] = 1.0
+    total, size = 0.0, 0.0
+    for i in range(pose.cables.shape[1]):
+        factor = pose.cables[SHARE, i] / pose.scale[FORCE]
+        alpha = along(pose, value, LEVEL, i) * factor
+        beta = along(pose, value, LIFT, i) * factor
+        first, last = cut[0, i], cut[1, i]
+        g = alpha * body.pulls[i, first] + beta * body.lifts[i, first]
+        largest, best, end = -np.inf, g, first
+        for j in range(first + 1, last + 1):
+            before, g = g, alpha * body.pulls[i, j] + beta * body.lifts[i, j]
+            largest = max(largest, max(before, g) + abs(beta) * body.bulges[i, j])
+            if g > best:
+                best, end = g, j
+        total += largest
+        size += abs(largest)
+        body.ends[at, i] = end
+        for k in range(m):
+            row = pose.rows[k]
+            level, lift = pose.cables[LEVEL + row, i], pose.cables[LIFT + row, i]
+            point[k] += factor * (level * body.pulls[i, end] + lift * body.lifts[i, end])
+    return bool(total < -_MARGIN * size)
+
+
+@inner
+def _cut(pose: Pose, body: Body, part: int, n_points: int) -> bool:
+    """Cut a part where the mixture is farthest from what a cable can do; False if too small."""
+    cone, cuts, c = body.cone, body.cuts, pose.cables
+    m = body.wrench.size
+    whole = 0.0
+    for j in range(1, n_points):
+        whole += cone.share[j] * cone.rays[j, m]
+    widest, cable, at = 0.0, -1, 0
+    for i in range(c.shape[1]):
+        p, up, lever = 0.0, 0.0, 0.0
+        for j in range(1, n_points):
+            share = cone.share[j] * cone.rays[j, m] / whole
+            p += share * body.pulls[i, body.ends[j, i]]
+            up += share * body.lifts[i, body.ends[j, i]]
+        first, last = cuts[part, 0, i], cuts[part, 1, i]
+        end = np.searchsorted(body.pulls[i, first : last + 1], p) + first
+        inset = int(_LEAST_PART * (last - first)) + 1
+        end = min(max(end, first + inset), last - inset)
+        for k in pose.rows:
+            lever += abs(c[LIFT + k, i])
+        apart = abs(up - body.lifts[i, end]) * lever * c[SHARE, i]
+        if last - first > 2 and apart > widest:
+            widest, cable, at = apart, i, end
+    if cable < 0:
+        return False
+    cuts[part + 1] = cuts[part]
+    cuts[part, 1, cable] = cuts[part + 1, 0, cable] = at
+    return True
+
+
+@inner
+def _divide(pose: Pose, body: Body) -> None:
+    """Divide all pulls that the strength of each cable bears into pieces."""
+    c = pose.cables
+    body.cuts[0, 0], body.cuts[0, 1] = 0, _PIECES
+    for i in range(c.shape[1]):
+        low, high = pulls_borne(pose, i, _FEW_HALVINGS)
+        ratio = (high / low) ** (1.0 / _PIECES)
+        before = 0.0
+        for j in range(_PIECES + 1):
+            up, slope, _ = hanging(c, i, low)
+            body.pulls[i, j], body.lifts[i, j] = low, up
+            body.bulges[i, j] = 0.25 * low * (1.0 - 1.0 / ratio) * abs(slope - before)
+            before = slope
+            low *= ratio
+
+
+@element
+def hanging(c: FloatArray, i: int, p: float) -> tuple[float, float, float]:
+    """Return the upward pull at a pull, its slope, and the top tension; to 1e-9."""
+    X2_, D_, kappa = c[X2, i], c[D, i], c[KAPPA, i]
+    theta = 0.5 / p
+    straight = np.sqrt(D_ * D_ + X2_ * (1.0 + theta * theta * sag_series(theta * theta)))
+    length = straight / (1.0 + kappa * p * straight)
+    F, _, F_l, _, _, _, _, _, _ = unit_cable(p, length, X2_, D_, kappa)
+    length -= F / F_l
+    F, F_p, F_l, v, v_p, v_l, t, _, t_l = unit_cable(p, length, X2_, D_, kappa)
+    rest = F / F_l
+    return v - v_l * rest, v_p - v_l * F_p / F_l, t - t_l * rest
+
+
+@inner
+def pulls_borne(pose: Pose, i: int, halvings: int) -> tuple[float, float]:
+    """Return pulls between which lie all those that the strength bears.
+
+    Somewhere a cable is parallel to its chord, and there its tension is pull times chord. From that
+    bound downward: the top tension falls, and once the cable is slack it rises.
+    """
+    c = pose.cables
+    strength = c[STRENGTH, i]
+    high = strength / c[CHORD, i]
+    low = high
+    while low > PULL_FLOOR and hanging(c, i, low)[2] > strength:
+        low *= _SHORTER
+    if low <= PULL_FLOOR:
+        return PULL_FLOOR, high
+    borne = low
+    for _ in range(halvings):
+        p = 0.5 * (borne + high)
+        if hanging(c, i, p)[2] > strength:
+            high = p
+        else:
+            borne = p
+    slack = borne
+    while low > PULL_FLOOR and hanging(c, i, low)[2] <= strength:
+        slack = low
+        low *= _SHORTER
+    low = max(low, PULL_FLOOR)
+    for _ in range(halvings):
+        p = 0.5 * (slack + low)
+        if hanging(c, i, p)[2] > strength:
+            low = p
+        else:
+            slack = p
+    return low, high
