@@ -18,7 +18,7 @@ from designer.kernel.square import solve_range
 from designer.kernel.table import LANES
 from designer.model.robot import Robot
 
-_SHARE = 32 * LANES
+_SHARE = 128 * LANES
 """Poses that one thread takes at a time."""
 _SLOW_SHARE, _SEARCH_SHARE = 32, 2
 """The same where a pose takes a hundred times as long, and where branches are searched."""

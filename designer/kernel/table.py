@@ -18,7 +18,7 @@ from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import element
 from designer.kernel.unit_cable import unit_cable
 
-LANES = 128
+LANES = 32
 """Poses of a block where columns are lanes."""
 
 # Of the pose: squared horizontal distance, drop, chord; size of the lever, by its components.
