@@ -40,7 +40,7 @@ _MORE_RISE = 2.0
 """How much a climb may still rise, over what the first part brought to any of its extreme."""
 _MOST_TURNS = 200
 """A demand that grows in ever smaller steps, as at the edge of what can be held, has no end."""
-_SHRINKS = 0.3
+_SHRINKS = 0.4
 """Of a cloud where nothing rises."""
 _SHRINKS_AT_CORNER = 0.1
 """Of a cloud about a landmark of the space where nothing rises; a turn tries a factor of 30."""
@@ -99,7 +99,7 @@ _FOLLOWING = Effort(
     per_face=24,
     inside=192,
     starts=4,
-    finalists=2,
+    finalists=4,
     revisited=1,
     beside=2,
     tried_beside=32,
