@@ -23,6 +23,7 @@ from designer.report import format as fmt
 from designer.report.figures import palette
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_svg import RendererSVG
     from matplotlib.figure import Figure
@@ -79,21 +80,21 @@ def drawing() -> Iterator[None]:
         yield
 
 
-def sheet(
-    height_mm: float,
-    *,
-    width_mm: float = palette.PAPER_WIDTH_MM,
-    keeps_aspect: bool = False,
-) -> Figure:
+def sheet(height_mm: float, *, width_mm: float = palette.PAPER_WIDTH_MM) -> Figure:
     """Return an empty figure of this height on paper and, unless told, of the column's width [mm].
 
-    ``keeps_aspect`` tells that its axes have equal scales, so that they cannot fill their space.
+    For axes in one grid; what stands beside that, such as a legend, is given to `beside`.
     """
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
+    from matplotlib.gridspec import SubplotParams
 
+    from designer.report.figures.layout import GridLayout
+
+    # Axes begin nearly where they end, so that their texts are measured only once.
+    begin = {"left": 0.1, "right": 0.98, "bottom": 0.15, "top": 0.92, "wspace": 0.1, "hspace": 0.2}
     size = (width_mm / 25.4, height_mm / 25.4)
-    figure = Figure(figsize=size, layout="compressed" if keeps_aspect else "constrained")
+    figure = Figure(figsize=size, layout=GridLayout(), subplotpars=SubplotParams(**begin))
     FigureCanvasSVG(figure).get_renderer = partial(_ruler, figure)
     return figure
 
@@ -147,6 +148,13 @@ def grid_lines(axes: Axes, axis: Literal["x", "y", "both"] = "y") -> None:
     axes.set_axisbelow(True)
 
 
+def beside(figure: Figure, artist: Artist, side: str) -> None:
+    """Have the axes of a sheet leave room for what stands at its side: ``left``, ``lower``, …."""
+    layout: Any = figure.get_layout_engine()
+    if layout is not None:  # a picture in space has none
+        layout.beside.append((artist, side))
+
+
 def legend(figure: Figure, looks: Sequence[tuple[str, Style]], loc: str, **layout: Any) -> None:
     """Say what each look means, an area where it has a ``facecolor``, else a line or a mark."""
     from matplotlib.lines import Line2D
@@ -157,7 +165,7 @@ def legend(figure: Figure, looks: Sequence[tuple[str, Style]], loc: str, **layou
         for label, look in looks
     ]
     if entries:
-        figure.legend(handles=entries, loc=loc, **layout)
+        beside(figure, figure.legend(handles=entries, loc=loc, **layout), loc.split()[1])
 
 
 def region(axes: Axes, shape: Region, plane: list[int], label: str = "") -> None:

@@ -115,4 +115,4 @@ def _bars(axes: Axes, bars: Bars, title: str) -> None:
     axes.margins(x=0.12)
     axes.locator_params(axis="x", nbins=5)
     canvas.grid_lines(axes, "x")
-    axes.set_title(title, loc="left")
+    axes.set_title(title, loc="right")  # over the names as well, for which there is room

@@ -16,7 +16,6 @@ from designer.report.figures import canvas, palette
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.colors import BoundaryNorm, Colormap
-    from matplotlib.figure import Figure
 
 _MUCH = 6.0
 _KILONEWTON = 1e3
@@ -129,15 +128,23 @@ class Steps:
         """Return red, green and blue (n, 3) of steps (n,), counted from 0."""
         return np.round(255.0 * self.colormap(step)[:, :3]).astype(np.uint8)
 
-    def bar(self, figure: Figure, label: str, **place: Any) -> None:
-        """Draw the scale as a bar, beside the axes ``ax`` or into the axes ``cax``."""
+    def bar(self, axes: Axes, label: str, *, is_level: bool = False, **style: Any) -> None:
+        """Draw the scale as a bar that fills axes, upright or level."""
         from matplotlib.cm import ScalarMappable
 
+        is_even = np.allclose(np.diff(self.levels, 2), 0.0)
+        layout = {
+            "orientation": "horizontal" if is_level else "vertical",
+            "spacing": "proportional" if is_even else "uniform",  # the same then, and cheaper
+            "ticks": self.ticks,
+            "extendfrac": 0.04,
+            "label": label,
+        }
         mappable = ScalarMappable(self.norm, self.colormap)
-        layout = {"ticks": self.ticks, "extendfrac": 0.04, "label": label, **place}
-        bar = figure.colorbar(mappable, **layout)
+        bar = axes.figure.colorbar(mappable, cax=axes, **layout | style)
+        bar.minorticks_off()
         bar.outline.set_linewidth(0.4)
-        bar.ax.tick_params(length=2)
+        axes.tick_params(length=2)
 
 
 def steps_over_decades(values: FloatArray) -> Steps | None:

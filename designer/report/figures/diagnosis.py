@@ -51,7 +51,9 @@ def carriers_chart(diagnosis: Diagnosis, names: Sequence[str], key: str, layout:
             for axes, stage_names in zip(grid[:, column], rows, strict=True):
                 _carrier(axes, diagnosis, values, channel, stage_names)
             grid[-1, column].set_xlabel(words.covariate_axis(name), parse_math=False)
-        figure.supylabel("residual [times the noise]", fontsize=palette.FONT_POINTS)
+        text = "residual [times the noise]"
+        label = figure.supylabel(text, x=0.006, fontsize=palette.FONT_POINTS)
+        canvas.beside(figure, label, "left")
         return canvas.svg(figure, key, "Residual against what it goes with most")
 
 

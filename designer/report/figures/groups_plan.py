@@ -36,7 +36,7 @@ def groups_plan(robot: Robot, region: Region, assignment: Assignment) -> str:
     looks = cycle(product(("-", "--", ":"), palette_of_groups))
     used = verification.utilisation
     with canvas.drawing():
-        figure = canvas.sheet(104.0, keeps_aspect=True)
+        figure = canvas.sheet(104.0)
         axes = figure.subplots()
         canvas.region(axes, region, plane, "where the platform goes")
         for group, rope, share in zip(assignment.groups, assignment.ropes, used, strict=True):
@@ -51,7 +51,8 @@ def groups_plan(robot: Robot, region: Region, assignment: Assignment) -> str:
         _platform(axes, ends[:, plane])
         set_limits(axes, np.concatenate([exits, region.bounds_m])[:, plane], exits[:, plane])
         axes.set(xlabel=f"{'xyz'[plane[0]]} [m]", ylabel=f"{'xyz'[plane[1]]} [m]")
-        figure.legend(loc="outside right upper", handlelength=2.6)
+        legend = figure.legend(loc="outside right upper", handlelength=2.6)
+        canvas.beside(figure, legend, "right")
         return canvas.svg(figure, "groups", "The robot from above with the cables of each group")
 
 

@@ -15,7 +15,7 @@ def poses_chart(plan: Plan) -> str:
     workspace = plan.study.workspace
     assert workspace is not None
     with canvas.drawing():
-        figure = canvas.sheet(55.0, keeps_aspect=True)
+        figure = canvas.sheet(55.0)
         for axes, plane in zip(figure.subplots(1, 2), ([0, 1], [0, 2]), strict=True):
             canvas.region(axes, workspace.region, plane)
             axes.plot(*exits_m[:, plane].T, "s", color=palette.INK, markersize=3.5)

@@ -182,7 +182,7 @@ def workspace_scene(
         ]
         canvas.legend(figure, looks, "lower left", ncols=2)
         if steps is not None:
-            steps.bar(figure, quantity.label, cax=figure.add_axes(look.bar))
+            steps.bar(figure.add_axes(look.bar), quantity.label)
         _write_names(axes, stage.view, maps, quantity)
         return overlay.finished(figure)
 

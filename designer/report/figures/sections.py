@@ -32,10 +32,11 @@ from designer.report.figures.colours import (
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _NARROW_MM = 112.0
 """Of the sheet of a map that has a list beside it."""
+_BAR_MM = 1.9
+"""Thickness of a colour bar."""
 _ZOOM = 0.6
 """Of the extent with the exit points: a smaller region is shown alone."""
 _APART = 0.09
@@ -54,11 +55,12 @@ def slice_panels(maps: WorkspaceMaps, quantities: Sequence[MapQuantity] = (TENSI
     flat = maps.flat_m(maps.section.position_m)
     map_mm = min(width_mm * _height_over_width(flat, corners), 56.0)
     with canvas.drawing():
-        figure = canvas.sheet(38.0 + (6.0 if looks else 0.0) + map_mm, keeps_aspect=True)
+        figure = canvas.sheet(38.0 + (6.0 if looks else 0.0) + map_mm)
         canvas.legend(figure, looks, "outside lower center", ncols=3)
-        row = figure.subplots(1, len(quantities), squeeze=False)[0]
-        for axes, quantity in zip(row, quantities, strict=True):
-            _slice(figure, axes, maps, quantity)
+        heights = (map_mm, _BAR_MM)
+        row, bars = figure.subplots(2, len(quantities), squeeze=False, height_ratios=heights)
+        for axes, bar, quantity in zip(row, bars, quantities, strict=True):
+            _slice(axes, bar, maps, quantity)
         for axes in row[1:]:
             axes.set_ylabel("")
             axes.tick_params(labelleft=False)
@@ -118,8 +120,8 @@ def section_map(
     values, steps = np.ma.masked_invalid(section.values), steps_over_decades(section.values)
     with canvas.drawing():
         height_mm = 20.0 + min(80.0 * _height_over_width(flat, corners), 56.0)
-        figure = canvas.sheet(height_mm, width_mm=_NARROW_MM, keeps_aspect=True)
-        axes = figure.subplots()
+        figure = canvas.sheet(height_mm, width_mm=_NARROW_MM)
+        axes, bar = figure.subplots(1, 2, width_ratios=(0.75 * _NARROW_MM, _BAR_MM))
         _paint(axes, flat, values, section.is_bad, steps)
         if has_limit:
             bold: Style = {"colors": palette.WARNING, "linewidths": 1.6}
@@ -128,9 +130,10 @@ def section_map(
         set_limits(axes, flat, corners)
         axes.set(xlabel="x [m]", ylabel="y [m]")
         axes.set_title(f"section at {place}", loc="left")
-        if steps is not None:
-            form: Style = {"format": lambda value, _: fmt.trimmed(float(value), 6)}
-            steps.bar(figure, label, ax=axes, shrink=0.9, aspect=26, **form)
+        if steps is None:
+            bar.remove()
+        else:
+            steps.bar(bar, label, format=lambda value, _: fmt.trimmed(float(value), 6))
         looks: list[tuple[str, Style]] = []
         if has_limit:
             look: Style = {"color": palette.WARNING, "linewidth": 1.6}
@@ -143,7 +146,7 @@ def section_map(
         return canvas.svg(figure, key, f"{label}, {place}")
 
 
-def _slice(figure: Figure, axes: Axes, maps: WorkspaceMaps, quantity: MapQuantity) -> None:
+def _slice(axes: Axes, bar: Axes, maps: WorkspaceMaps, quantity: MapQuantity) -> None:
     """One map and its scale."""
     field, flat = maps.section, maps.flat_m(maps.section.position_m)
     steps = steps_for(quantity.of(field))
@@ -164,12 +167,12 @@ def _slice(figure: Figure, axes: Axes, maps: WorkspaceMaps, quantity: MapQuantit
     if steps is None:
         why = "all left out" if field.is_left_out.all() else "no pose can be held"
         axes.set_title(f"{_place(maps)}; {why}", loc="left")
+        bar.remove()
         return
     axes.set_title(_place(maps), loc="left")
     is_crowded = canvas.decimals(steps.ticks) > 2
     ticks = steps.ticks[:: 2 if is_crowded else 1]
-    bar: Style = {"location": "bottom", "shrink": 0.92, "aspect": 30}
-    steps.bar(figure, quantity.label, ax=axes, ticks=ticks, **bar)
+    steps.bar(bar, quantity.label, is_level=True, ticks=ticks)
 
 
 def _place(maps: WorkspaceMaps) -> str:
@@ -211,7 +214,8 @@ def _paint(
 ) -> None:
     """Colour rings (rings, spokes, 2): grey, hatched where bad, in steps where there are values."""
     x, y = np.moveaxis(flat, -1, 0)
-    axes.fill(x[-1], y[-1], facecolor=palette.LEFT_OUT, edgecolor="none")
+    if np.ma.getmaskarray(values).any():
+        axes.fill(x[-1], y[-1], facecolor=palette.LEFT_OUT, edgecolor="none")
     if is_bad.any():
         look: Style = {"colors": [palette.WARNING_PALE], "hatches": ["//////"]}
         bad = axes.contourf(x, y, is_bad.astype(np.float64), levels=[0.5, 1.5], **look)

@@ -124,7 +124,7 @@ def parallel(axes_of: Sequence[Axis], colour: Axis, front: BoolArray) -> str:
     places = np.broadcast_to(np.arange(len(axes_of), dtype=float), (len(rows), len(axes_of)))
     with canvas.drawing():
         figure = canvas.sheet(85.0)
-        axes = figure.subplots()
+        axes, bar = figure.subplots(1, 2, width_ratios=(60, 1))
         lines: Any = LineCollection(
             np.stack([places, shares[rows]], axis=2).tolist(),
             array=colour.values[rows],
@@ -145,7 +145,7 @@ def parallel(axes_of: Sequence[Axis], colour: Axis, front: BoolArray) -> str:
             for text, at in zip(ends, (-0.05, 1.04), strict=True):
                 ground = canvas.paper(0.5, 0.8)
                 axes.text(place, at, _shortened(text), ha="center", va="center", bbox=ground)
-        figure.colorbar(lines, ax=axes, label=_wrapped(colour.title), pad=0.02)
+        figure.colorbar(lines, cax=bar, label=_wrapped(colour.title))
         return canvas.svg(figure, "parallel", "Every point as a line over all quantities")
 
 
