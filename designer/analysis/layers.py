@@ -8,6 +8,7 @@ import numpy as np
 
 from designer.analysis.maps import WorkspaceMaps
 from designer.arrays import FloatArray
+from designer.model.rings import every_second
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.selection.usable import Usable, UsableSize
@@ -15,10 +16,11 @@ from designer.statics.inverse import solve_sagging
 from designer.workspace.demand import is_left_out
 
 _MOST = 5
-_HEIGHTS = 25
 _BEYOND = 1e3
 _SOLVED, _SEARCHED = 2e5, 2e4
 """Poses that are solved at most, and where each may have several branches, which are searched."""
+_FEW = 8
+"""Rows of the largest grid that are kept in any case."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,19 +31,25 @@ class Layers:
     ----------
     sizes : tuple of UsableSize
         Thinnest first.
-    position_m : array (rings, spokes, heights, 3)
-        Grid [m].
-    utilisation : array (n_sizes, rings, spokes, heights)
-        Largest over allowable tension; very large where a pose cannot be held or does not count.
+    grids_m : tuple of arrays (rows, columns, 3)
+        Outside of the opened region [m].
+    utilisation : array (n_sizes, n_points)
+        Largest over allowable tension at the points of all grids; very large where a pose cannot
+        be held or does not count.
     """
 
     sizes: tuple[UsableSize, ...]
-    position_m: FloatArray
+    grids_m: tuple[FloatArray, ...]
     utilisation: FloatArray
+
+    @property
+    def position_m(self) -> FloatArray:
+        """The points of all grids (n_points, 3) [m]."""
+        return np.concatenate([grid.reshape(-1, 3) for grid in self.grids_m])
 
 
 def layers_of(maps: WorkspaceMaps, usable: Usable) -> Layers | None:
-    """Solve the grid with the sizes that are shown.
+    """Solve the outside of the opened region with the sizes that are shown.
 
     None for a list of points, and where no size serves a part only.
     """
@@ -49,17 +57,14 @@ def layers_of(maps: WorkspaceMaps, usable: Usable) -> Layers | None:
     workspace = maps.study.workspace
     if "top" not in maps.shell or not sizes or workspace is None:
         return None
-    plan = maps.shell["top"].position_m
-    solved = plan[..., 0].size * _HEIGHTS * len(sizes) * workspace.orientations.count
+    grids = tuple(field.position_m for field in maps.shell.values())
     most = _SOLVED if maps.study.robot.has_one_branch else _SEARCHED
-    share = min(1.0, np.sqrt(most / solved))  # a coarser grid where there would be more to solve
-    rings = np.linspace(0, len(plan) - 1, max(2, round(share * len(plan)))).round().astype(int)
-    low, high = maps.region.bounds_m[:, 2]
-    heights = np.linspace(low, high, max(2, round(share * _HEIGHTS)))
-    position = np.repeat(plan[rings, :, None], len(heights), axis=2)
-    position[..., 2] = heights
-    used = [_utilisation(maps.study.robot, workspace, size, position) for size in sizes]
-    return Layers(sizes, position, np.stack(used))
+    most /= len(sizes) * workspace.orientations.count
+    while sum(grid[..., 0].size for grid in grids) > most and max(map(len, grids)) > _FEW:
+        grids = tuple(grid[every_second(grid)] for grid in grids)
+    points = np.concatenate([grid.reshape(-1, 3) for grid in grids])
+    used = [_utilisation(maps.study.robot, workspace, size, points) for size in sizes]
+    return Layers(sizes, grids, np.stack(used))
 
 
 def chosen_sizes(usable: Usable) -> tuple[UsableSize, ...]:

@@ -6,8 +6,10 @@ Texts stand near what they name, clear of all else.
 
 from __future__ import annotations
 
-import io
-from collections.abc import Iterable
+import struct
+import zlib
+from collections.abc import Callable, Iterable
+from functools import cache
 from itertools import product
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -24,10 +26,9 @@ from designer.report.figures.stage import Image
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-    from matplotlib.text import Text
 
 _SIDES = (
     ((0, 1), "center", "bottom"),
@@ -42,24 +43,34 @@ _SIDES = (
 """Where a text may stand, right and up, and how it is aligned then."""
 _OVER_TEXT, _OVER_LINE, _BY_ORDER = 1000.0, 5.0, 0.02
 """What it costs to cover a text or a point of a line, and to take the next place of the list."""
-_EXTENTS: WeakKeyDictionary[Text, Any] = WeakKeyDictionary()
+_EXTENTS: WeakKeyDictionary[Artist, Any] = WeakKeyDictionary()
 
 
 def over(image: Image, letters: float = 1.0) -> tuple[Figure, Axes]:
     """Return a figure with the picture in it, whose axes count pixels from the upper left.
 
     ``letters`` is the size of letters and lines over the usual, for a picture that is printed
-    small.
+    small. Only one of a size is written over at a time: the next one has its figure.
     """
+    figure, axes = _empty(letters)
+    for artist in (*axes.texts, *axes.lines, *figure.legends, *figure.axes[1:]):
+        artist.remove()
+    # An image of Matplotlib would be sampled anew, which takes longer than to draw all the rest.
+    pixels = _pixels(figure)
+    pixels[..., :3], pixels[..., 3] = image, 255
+    return figure, axes
+
+
+@cache
+def _empty(letters: float) -> tuple[Figure, Axes]:
+    """One figure for all pictures: to make one takes longer than to write over it."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     dots_per_inch = letters * 240.0  # 1600 px fill the column of the printed report
     size = (WIDTH_PX / dots_per_inch, HEIGHT_PX / dots_per_inch)
     figure = Figure(figsize=size, dpi=dots_per_inch, facecolor="none")
-    # An image of Matplotlib would be sampled anew, which takes longer than to draw all the rest.
-    pixels = _pixels(FigureCanvasAgg(figure))
-    pixels[..., :3], pixels[..., 3] = image, 255
+    FigureCanvasAgg(figure)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
     axes.set(xlim=(0, WIDTH_PX), ylim=(HEIGHT_PX, 0))
@@ -68,36 +79,34 @@ def over(image: Image, letters: float = 1.0) -> tuple[Figure, Axes]:
 
 def finished(figure: Figure) -> Image:
     """Return the picture (1000, 1600, 3) with what was written over it."""
-    from matplotlib.backend_bases import FigureCanvasBase
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    sheet = figure.canvas
-    assert isinstance(sheet, FigureCanvasAgg)
+    sheet: Any = figure.canvas
     figure.draw(sheet.get_renderer())
-    image = _pixels(sheet)[..., :3].copy()
-    figure.clear()  # its texts know the canvas that drew them, which holds the pixels
-    FigureCanvasBase(figure)  # in place of that
-    return image
+    return _pixels(figure)[..., :3].copy()
 
 
-def _pixels(sheet: FigureCanvasAgg) -> Image:
-    """What a canvas has been drawn on, to be written to (height, width, 4)."""
+def _pixels(figure: Figure) -> Image:
+    """What a figure has been drawn on, to be written to (height, width, 4)."""
+    sheet: Any = figure.canvas
     return np.asarray(sheet.get_renderer().buffer_rgba())
 
 
 def png(image: Image) -> bytes:
-    """Return a picture as a PNG file, without the rows of one colour at its top and bottom.
+    """Return a picture as a PNG file, without the white rows at its top and bottom.
 
-    A narrow margin stays, and so does the width: all scenes of a page are drawn to one scale.
+    A narrow margin stays, and so does the width: all scenes of a page are drawn to one scale. Rows
+    are packed as they are: to filter them first, as Pillow does, takes longer and saves nothing.
     """
-    from PIL import Image as Pillow
-
-    rows = np.flatnonzero((image != image[0, 0]).any(axis=(1, 2)))
+    lines = image.reshape(len(image), -1)
+    rows = np.flatnonzero(lines.min(axis=1) < 255)
     margin = round(0.01 * len(image))
     top, bottom = (max(rows[0] - margin, 0), rows[-1] + 1 + margin) if len(rows) else (0, None)
-    stream = io.BytesIO()
-    Pillow.fromarray(image[top:bottom]).save(stream, format="png")
-    return stream.getvalue()
+    unfiltered = np.pad(lines[top:bottom], ((0, 0), (1, 0)))  # a zero before each row says so
+    head = struct.pack(">2I5B", image.shape[1], len(unfiltered), 8, 2, 0, 0, 0)  # 8 bits, RGB
+    parts = ((b"IHDR", head), (b"IDAT", zlib.compress(unfiltered.data, 3)), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        for kind, data in parts
+    )
 
 
 def meanings(fields: Iterable[RegionField]) -> list[tuple[str, str]]:
@@ -239,8 +248,8 @@ def write_clear(
     looks = {"bbox": canvas.paper(1.2, 0.8), "annotation_clip": False, **style}
     label = canvas.note(axes, text, (0, 0), (0, 0), **looks)
     occupied = _boxes(
-        *(bar.get_tightbbox() for bar in axes.figure.axes[1:]),
-        *(_extent(other) for other in axes.texts if other is not label),
+        *(_extent(bar, bar.get_tightbbox) for bar in axes.figure.axes[1:]),
+        *(_extent(x, x.get_window_extent) for x in axes.texts if x is not label),
     )
 
     size = np.asarray(label.get_window_extent().size, dtype=np.float64)
@@ -288,11 +297,11 @@ def obstacles(view: View, lines_m: Iterable[FloatArray]) -> FloatArray:
     return np.concatenate(parts)
 
 
-def _extent(text: Text) -> Any:
-    """Where a text stands that stays there; to find it out for all again and again takes long."""
-    if text not in _EXTENTS:
-        _EXTENTS[text] = text.get_window_extent()
-    return _EXTENTS[text]
+def _extent(artist: Artist, measure: Callable[[], Any]) -> Any:
+    """Where something stands that stays there; to measure it again and again takes long."""
+    if artist not in _EXTENTS:
+        _EXTENTS[artist] = measure()
+    return _EXTENTS[artist]
 
 
 def _boxes(*boxes: Any) -> FloatArray:

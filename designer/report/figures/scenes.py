@@ -20,7 +20,7 @@ from designer.report import format as fmt
 from designer.report.figures import canvas, overlay, palette
 from designer.report.figures.canvas import Style
 from designer.report.figures.colours import DIAMETER, MapQuantity, Steps, steps_for
-from designer.report.figures.parts import base_outline_m, floor_corners
+from designer.report.figures.parts import base_outline_m, floor_corners, grid_faces
 from designer.report.figures.stage import BORDER_OPACITY, Image, SceneCanvas
 from designer.report.figures.view import (
     Frame,
@@ -203,10 +203,13 @@ def usable_scene(maps: WorkspaceMaps, usable: Usable) -> Image | None:
     if layers is None:
         return None
     exits, stage = maps.study.robot.exit_points_m, SceneCanvas(view_of(maps))
-    rest: Any = pyvista.StructuredGrid(*np.moveaxis(layers.position_m, -1, 0))
+    starts = np.cumsum([0, *(grid[..., 0].size for grid in layers.grids_m[:-1])])
+    grids = zip(layers.grids_m, starts, strict=True)
+    faces = [grid_faces(*grid.shape[:2]) + start for grid, start in grids]
+    rest: Any = pyvista.PolyData.from_regular_faces(layers.position_m, np.concatenate(faces))
     for number, used in enumerate(layers.utilisation):
         # In the logarithm the boundary lies between two points where it does in the utilisation.
-        rest[f"size {number}"] = np.log(used).ravel(order="F")
+        rest[f"size {number}"] = np.log(used)
     for number, colour in enumerate(colours(layers)):  # what it serves beyond the size before it
         if rest.n_points == 0:  # the sizes before it serve all that is drawn
             break
