@@ -34,7 +34,10 @@ def served_chart(served: Served) -> str:
         sag, straight = (palette.SAG, 1), (palette.MASSLESS, -1)
         _curve(axes, served.massless_diameter_m, served.massless_share, "massless", *straight)
         _curve(axes, served.diameter_m, served.share, "with sag", *sag)
-        _needed(axes, served.massless_needed_m, "massless", *straight)
+        low, high = axes.get_xlim()
+        is_apart = 1e3 * (served.needed_m - served.massless_needed_m) > 0.15 * (high - low)
+        side = 1 if is_apart else -1  # on the other a curve has its name
+        _needed(axes, served.massless_needed_m, "massless", palette.MASSLESS, side)
         _needed(axes, served.needed_m, "serves all", *sag)
         _unserved(axes, served)
         canvas.grid_lines(axes)
