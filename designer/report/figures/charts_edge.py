@@ -104,7 +104,7 @@ def _zones(axes: Axes, profile: EdgeProfile, start: float) -> None:
     axes.axvline(end, color=palette.WARNING, linewidth=0.9)
     distance = f"{canvas.significant(end, 2 if end < 100.0 else 3)} m"
     no_cable = "no cable holds" if profile.is_proved else "none found"
-    text = f"{no_cable} within {distance} of the edge"
+    text = f"{no_cable} within {distance}"
     if profile.holds_again:
         text = f"first failure, {distance} from the edge"
     _upright(axes, end, text, palette.WARNING, 3.0 if end > 0.02 * start else -3.0)
