@@ -48,7 +48,7 @@ _FEW_HALVINGS = 12
 """Where the range may be a little wider than what the strength bears."""
 
 
-class Body(NamedTuple):
+class CableRanges(NamedTuple):
     """Arrays for what the cables can do.
 
     Parameters
@@ -77,9 +77,9 @@ class Body(NamedTuple):
 
 
 @inner
-def new_body(m: int, n: int) -> Body:
+def new_body(m: int, n: int) -> CableRanges:
     """Return the arrays for n cables in m equations."""
-    return Body(
+    return CableRanges(
         np.zeros((n, _PIECES + 1)),
         np.zeros((n, _PIECES + 1)),
         np.zeros((n, _PIECES + 1)),
@@ -91,7 +91,7 @@ def new_body(m: int, n: int) -> Body:
 
 
 @inner
-def misses_loads(pose: Pose, body: Body) -> bool:
+def misses_loads(pose: Pose, body: CableRanges) -> bool:
     """Tell whether it is proved that no c above zero is left."""
     _divide(pose, body)
     parts = 1
@@ -109,7 +109,7 @@ def misses_loads(pose: Pose, body: Body) -> bool:
 
 
 @inner
-def is_proved_by(pose: Pose, body: Body, dual: FloatArray, is_divided: bool) -> bool:
+def is_proved_by(pose: Pose, body: CableRanges, dual: FloatArray, is_divided: bool) -> bool:
     """Tell whether the multipliers that a start ended with prove it; divides first if need be."""
     if not is_divided:
         _divide(pose, body)
@@ -119,7 +119,7 @@ def is_proved_by(pose: Pose, body: Body, dual: FloatArray, is_divided: bool) -> 
 
 
 @inner
-def _approach(pose: Pose, body: Body, cut: IntArray) -> int:
+def _approach(pose: Pose, body: CableRanges, cut: IntArray) -> int:
     """Bring a mixture of points of a part near to the loads; return how many, 0 for a proof."""
     cone, wrench = body.cone, body.wrench
     m = wrench.size
@@ -151,7 +151,7 @@ def _approach(pose: Pose, body: Body, cut: IntArray) -> int:
 
 
 @inner
-def _is_apart(pose: Pose, body: Body, cut: IntArray, at: int) -> bool:
+def _is_apart(pose: Pose, body: CableRanges, cut: IntArray, at: int) -> bool:
     """Tell whether a wrench proves that a part misses the loads; write its farthest point `at`."""
     value, point, m = body.wrench, body.cone.rays[at], body.wrench.size
     of_load, size_of_load = 0.0, 0.0
@@ -187,7 +187,7 @@ def _is_apart(pose: Pose, body: Body, cut: IntArray, at: int) -> bool:
 
 
 @inner
-def _cut(pose: Pose, body: Body, part: int, n_points: int) -> bool:
+def _cut(pose: Pose, body: CableRanges, part: int, n_points: int) -> bool:
     """Cut a part where the mixture is farthest from what a cable can do; False if too small."""
     cone, cuts, c = body.cone, body.cuts, pose.cables
     m = body.wrench.size
@@ -218,7 +218,7 @@ def _cut(pose: Pose, body: Body, part: int, n_points: int) -> bool:
 
 
 @inner
-def _divide(pose: Pose, body: Body) -> None:
+def _divide(pose: Pose, body: CableRanges) -> None:
     """Divide all pulls that the strength of each cable bears into pieces."""
     c = pose.cables
     body.cuts[0, 0], body.cuts[0, 1] = 0, _PIECES

@@ -190,8 +190,8 @@ def refine_each_over_branches(
 
     every, nowhere = np.arange(len(starts)), np.empty((0, space.n_coordinates))
     hard = changed(starts, every)
-    extremes = searched(plain, np.setdiff1d(every, hard), effort, nowhere)
-    easy = np.array(sorted(extremes), dtype=np.int64)
+    easy = np.setdiff1d(every, hard)
+    extremes = searched(plain, easy, effort, nowhere)
     hard = np.union1d(hard, changed([places_of(extremes[k]) for k in easy.tolist()], easy))
     extremes |= searched(thorough, hard, effort, nowhere)
     return [extremes[k] for k in every.tolist()]
