@@ -133,7 +133,8 @@ def solve_batch(
             # Where all is proved, the search need not even be compiled.
             if (out.verdict != answer.NO_FINITE_CABLE).any():
                 share_out(search_range, count, _SEARCH_SHARE, *asked)
-        if rates_branches and not robot.has_one_branch:
+        is_any_solved = (out.verdict == answer.SOLVED).any()
+        if rates_branches and is_any_solved and not robot.has_one_branch:
             rated = situation, figures, sizing, out, potential
             share_out(rate_range, count, _SLOW_SHARE, *rated)
     if np.any(relative_weights != 1.0):  # the kernel's forces are those of cables of weight w

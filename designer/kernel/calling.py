@@ -50,6 +50,18 @@ class Situation(NamedTuple):
     rotations: FloatArray
     rows: IntArray
 
+    def part(self, at: IntArray) -> Situation:
+        """Return the situation in some of the poses, by their numbers in growing order."""
+        count = len(self.positions)
+        if len(at) == count:
+            return self
+        changed: dict[str, Any] = {}
+        for name in ("exit_points", "load", "positions", "rotations"):
+            values = getattr(self, name)
+            if len(values) == count:
+                changed[name] = plain(values[at])
+        return self._replace(**changed)
+
 
 class CableFigures(NamedTuple):
     """The cables of the poses.

@@ -16,6 +16,8 @@ from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, AttachedEach
 from designer.model.motion import Motion
 from designer.model.winches import Winches
 
+_AS_BUILT = frozen_array(np.eye(3))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Platform(checked.Value):
@@ -189,10 +191,9 @@ class Robot:
     @property
     def is_upright(self) -> bool:
         """Whether the base frame surely is the upright frame, so that nothing has to be turned."""
-        down = self.gravity_direction
-        falls_down = not down[:2].any() and down[2] < 0.0
-        is_as_built = not self.tilt_rad.any() and self.cable_load_direction is None
-        return falls_down and not self.is_planar and is_as_built
+        x, y, z = self.gravity_direction.tolist()  # asked often: of arrays it takes long
+        is_as_built = not any(self.tilt_rad.tolist()) and self.cable_load_direction is None
+        return x == y == 0.0 > z and not self.is_planar and is_as_built
 
     @property
     def upright(self) -> FloatArray:
@@ -210,7 +211,7 @@ class Robot:
     def level(self) -> FloatArray:
         """Rotation (3, 3) from the base frame to one whose z axis is the true vertical."""
         if self.is_upright:
-            return np.eye(3)
+            return _AS_BUILT
         line = self.exit_points_m.tobytes() if self.is_planar else b""
         return _level(line, *self.tilt_rad.tolist(), *self.gravity_direction.tolist())
 
@@ -407,6 +408,8 @@ class Poses:
         """The poses with one leading axis."""
         count = int(np.prod(self.shape, dtype=np.int64))
         rotation = self.rotation
+        if self.shape == (count,) and rotation.shape[:-2] in ((), (count,)):
+            return self
         if rotation.ndim > 2:
             rotation = self.rotations.reshape(-1, 3, 3)
         return Poses(self.position_m.reshape(count, 3), rotation)

@@ -17,6 +17,7 @@ from designer.statics.geometry import (
     CableGeometry,
     cable_geometry,
     level_geometry,
+    upright_exit_points_m,
     upright_situation,
 )
 from designer.statics.pulleys import (
@@ -60,6 +61,8 @@ class Task:
         Weight of the cables relative to w.
     sag_max : float or None
         Largest sag over chord, of more cables than degrees of freedom.
+    situation : Situation or None
+        Of poses (n_poses,) without pulleys, where the cables begin at the same points throughout.
     """
 
     kappa_per_m: float | FloatArray
@@ -68,6 +71,7 @@ class Task:
     force_N: FloatArray | None = None
     relative_weights: float | FloatArray = 1.0
     sag_max: float | None = None
+    situation: Situation | None = None
 
     def part(self, at: IntArray) -> Task:
         """Return the task for some of poses (n_poses,)."""
@@ -79,7 +83,15 @@ class Task:
         inverse = self.inverse_weight_m_per_N
         if isinstance(inverse, np.ndarray) and inverse.ndim == 1:
             changed["inverse_weight_m_per_N"] = inverse[at]
+        if self.situation is not None:
+            changed["situation"] = self.situation.part(at)
         return replace(self, **changed) if changed else self
+
+    def situation_at(self, robot: Robot, poses: Poses, exit_points_m: FloatArray) -> Situation:
+        """Return what kernels are told of the poses, with the cables beginning at these points."""
+        if self.situation is not None:
+            return self.situation
+        return upright_situation(robot, poses, exit_points_m, self.force_N)
 
 
 def solve_task(
@@ -95,7 +107,10 @@ def solve_task(
     flat = poses.flat
     count = len(flat.position_m)
     force = None if task.force_N is None else np.broadcast_to(task.force_N, poses.position_m.shape)
-    task = replace(task, force_N=None if force is None else force.reshape(count, 3))
+    task = replace(task, force_N=None if force is None else force.reshape(count, 3), situation=None)
+    if robot.pulley_radius_m == 0.0:
+        points = upright_exit_points_m(robot)
+        task = replace(task, situation=task.situation_at(robot, flat, points))
 
     solution, run = _solve_over_pulleys(
         robot, flat, task, is_thorough=False, rates_branches=seeks_better
@@ -134,7 +149,7 @@ def _solve_over_pulleys(
     def solve(run: PulleyRun) -> tuple[Solution, FloatArray, float]:
         solution = solve_batch(
             robot,
-            upright_situation(robot, flat, run.exit_points_m, task.force_N),
+            task.situation_at(robot, flat, run.exit_points_m),
             task.kappa_per_m * ones,
             task.relative_weights * ones,
             task.strength_m * ones,
@@ -217,7 +232,11 @@ def _try_other_branches(
         rates_branches=False,
         turns=1,
     )
+    if robot.pulley_radius_m == 0.0:  # a proof is for points that stay where they are
+        solution.verdict[at[again.verdict == Verdict.NO_FINITE_CABLE]] = Verdict.NO_FINITE_CABLE
     solved = again.verdict == Verdict.SOLVED
+    if not solved.any():
+        return
     if task.inverse_weight_m_per_N is None:
         burden, before = again.weight_N_per_m, solution.weight_N_per_m[at]
     else:
@@ -230,9 +249,6 @@ def _try_other_branches(
     lighter = burden < (1.0 - _SAME) * before
     better = solved & (lighter | tauter | (solution.verdict[at] != Verdict.SOLVED))
     _replace(solution, run, at, again, its_run, better)
-    if robot.pulley_radius_m == 0.0:  # a proof is for points that stay where they are
-        proved = at[again.verdict == Verdict.NO_FINITE_CABLE]
-        solution.verdict[proved] = Verdict.NO_FINITE_CABLE
 
 
 def _let_hang(
@@ -267,7 +283,7 @@ def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -
         return
     poses = flat.part(unsolved)
     points = straight_run(robot, poses).exit_points_m
-    situation = upright_situation(robot, poses, points, task.part(unsolved).force_N)
+    situation = task.part(unsolved).situation_at(robot, poses, points)
     is_near, least_N = np.zeros(len(unsolved), dtype=np.bool_), robot.tension_min_N
     if robot.pulley_radius_m > 0.0:  # the cone bounds a cable only beyond its pulley
         level = level_geometry(robot, poses)
