@@ -88,7 +88,7 @@ def _view(
         canvas.note(axes, text, tuple(place), tuple(13.0 * away), ha="center", va="center")
     axes.plot(*where_m[plane], marker="s", markersize=3.5, color=palette.INK, zorder=6)
     axes.set_aspect("equal")
-    axes.margins(0.09)
+    axes.margins(0.15)
     axes.set(xlabel=f"{'xyz'[plane[0]]} [m]", ylabel=f"{'xyz'[plane[1]]} [m]")
 
 
