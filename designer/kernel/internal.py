@@ -37,7 +37,7 @@ from designer.kernel.lanes import (
     put_cables,
     write_lane,
 )
-from designer.kernel.linear import solve_lanes
+from designer.kernel.linear import are_below, fill, solve_lanes
 from designer.kernel.table import (
     CHORD,
     KAPPA,
@@ -117,8 +117,8 @@ def solve_internal_poses(
         lane = lanes_of(every, first)
         place(cables, poses, situation, lane)
         put_cables(cables, figures, lane)
-        poses[C] = 0.0
-        stiffer[:] = 1.0
+        fill(poses[C], 0.0)
+        fill(stiffer, 1.0)
         cables[:, _BEFORE] = 0.0
         for i in range(n):  # straight cables that pull so
             row = cables[i]
@@ -138,9 +138,9 @@ def solve_internal_poses(
             solve_lanes(normal, m, m + 1)
             _set_step(slopes, normal, cables, m)
             _stiffen(stiffer, slopes, cables)
-            poses[STEP] = 0.0
+            fill(poses[STEP], 0.0)
             advance(cables, slopes, poses)
-            if np.max(poses[STEP]) < _SMALL_STEP:
+            if are_below(poses[STEP], _SMALL_STEP):
                 break
         linearise(cables)
         assemble(slopes, cables, poses, rows)
@@ -195,7 +195,7 @@ def _set_normal(normal: FloatArray, slopes: FloatArray, cables: FloatArray, m: i
     for r in range(m):
         for c in range(r, m):
             entry = normal[r, c]
-            entry[:] = 0.0
+            fill(entry, 0.0)
             for i in range(n):
                 row, row_slope, column_slope = cables[i], slopes[r, i], slopes[c, i]
                 for j in range(LANES):

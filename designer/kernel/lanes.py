@@ -11,7 +11,7 @@ from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import FORCE_X, FORCE_Z, LENGTH
 from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import inner
-from designer.kernel.linear import copy
+from designer.kernel.linear import copy, fill
 from designer.kernel.table import (
     L_0,
     L_P,
@@ -103,7 +103,7 @@ def assemble(A: FloatArray, cables: FloatArray, poses: FloatArray, rows: IntArra
     for m in range(rows.size):
         level, lift, is_level = LEVEL + rows[m], LIFT + rows[m], rows[m] in (0, 1, 5)
         rest = A[m, n]
-        rest[:] = 0.0
+        fill(rest, 0.0)
         copy(poses[LOAD + rows[m]], A[m, n + 1])
         for i in range(n):
             row, slope = cables[i], A[m, i]
@@ -121,7 +121,7 @@ def assemble(A: FloatArray, cables: FloatArray, poses: FloatArray, rows: IntArra
 @inner
 def aim_at_strength(poses: FloatArray, A: FloatArray, cables: FloatArray) -> None:
     """Set as goal the largest c that no linearised top tension forbids."""
-    poses[GOAL] = np.inf
+    fill(poses[GOAL], np.inf)
     n = cables.shape[0]
     for i in range(n):
         row = cables[i]

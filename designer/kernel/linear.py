@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, IntArray
 from designer.kernel.compiling import element, inner
 
 
@@ -11,6 +11,22 @@ def copy(source: FloatArray, target: FloatArray) -> None:
     """Copy numbers (n,); to assign an array would compile messages about shapes, for seconds."""
     for k in range(target.size):
         target[k] = source[k]
+
+
+@element
+def fill(target: FloatArray | IntArray, value: float) -> None:
+    """Set all numbers (n,) to a value, as `copy` does to those of an array."""
+    for k in range(target.size):
+        target[k] = value
+
+
+@element
+def are_below(values: FloatArray, limit: float) -> bool:
+    """Tell whether all values (n,) are below a limit; NaN is not."""
+    below = True
+    for value in values:
+        below = below and value < limit
+    return below
 
 
 @inner

@@ -30,7 +30,7 @@ from designer.kernel.lanes import (
     place,
     put_cables,
 )
-from designer.kernel.linear import copy, solve_lanes
+from designer.kernel.linear import are_below, copy, fill, solve_lanes
 from designer.kernel.square import check, evaluate
 from designer.kernel.table import CHORD, LANE_ROWS, LANES, D, L, P, V
 
@@ -77,25 +77,26 @@ def sweep_sizes(
     for start in range(0, count, LANES):
         lane = lanes_of(every, start)
         place(cables, poses, situation, lane)
-        of_size[:] = first
+        fill(of_size, first)
         put_cables(cables, figures, of_size)
         assemble(A, cables, poses, rows)
         solve_lanes(A, n, n + 2)
         for i in range(n):
             for right in range(2):
                 copy(A[i, n + right], guess[i, right])
-        poses[C] = inverse_weight[first]
+        fill(poses[C], inverse_weight[first])
         first_guess(cables, A, poses)
         for size in range(first, last):
-            poses[C], of_size[:] = inverse_weight[size], size
+            fill(poses[C], inverse_weight[size])
+            fill(of_size, size)
             put_cables(cables, figures, of_size)
             for _ in range(_ITERATIONS):  # Newton, from the state that the poses are in
                 linearise(cables)
                 assemble(A, cables, poses, rows)
                 solve_lanes(A, n, n + 2)
-                poses[STEP] = 0.0
+                fill(poses[STEP], 0.0)
                 advance(cables, A, poses)
-                if np.max(poses[STEP]) < _SMALLEST_STEP:
+                if are_below(poses[STEP], _SMALLEST_STEP):
                     break
             evaluate(cables)
             check(poses, cables, rows)

@@ -53,7 +53,7 @@ from designer.kernel.lanes import (
     place,
     put_cables,
 )
-from designer.kernel.linear import solve_lanes
+from designer.kernel.linear import are_below, fill, solve_lanes
 from designer.kernel.table import (
     KAPPA,
     L_0,
@@ -155,11 +155,11 @@ def _solve_block(
             for j in range(LANES):
                 poses[C, j] = poses[GOAL, j] + lightness * abs(poses[GOAL, j])
             first_guess(cables, A, poses)
-            poses[STEP] = 0.0
+            fill(poses[STEP], 0.0)
         else:
             approach(poses, lightness > 0.0)
             advance(cables, A, poses)
-            if np.max(poses[STEP]) < smallest_step:
+            if are_below(poses[STEP], smallest_step):
                 break
 
 

@@ -37,7 +37,7 @@ from designer.kernel.lanes import (
     put_cables,
     write_lane,
 )
-from designer.kernel.linear import solve_lanes
+from designer.kernel.linear import are_below, fill, solve_lanes
 from designer.kernel.table import CHORD, KAPPA, L_0, LANE_ROWS, LANES, SHARE, L, P
 
 _LEAST_PULL = 1.0 / 16.0
@@ -93,7 +93,7 @@ def solve_underactuated_poses(
         lane = lanes_of(every, first)
         place(cables, poses, situation, lane)
         put_cables(cables, figures, lane)
-        poses[C] = 0.0
+        fill(poses[C], 0.0)
         _start(cables, slopes, normal, poses, figures.least_tension, rows, scale)
         for turn in range(_MOST_TURNS):
             linearise(cables)
@@ -106,12 +106,12 @@ def solve_underactuated_poses(
             solve_lanes(normal, n, n + 1)
             for i in range(n):
                 slopes[i, n] = normal[i, n]
-            poses[STEP] = 0.0
+            fill(poses[STEP], 0.0)
             advance(cables, slopes, poses)
             for i in range(n):
                 for j in range(LANES):
                     cables[i, P, j] = max(cables[i, P, j], cables[i, _LEAST, j])
-            if np.max(poses[STEP]) < _SMALL_STEP:
+            if are_below(poses[STEP], _SMALL_STEP):
                 break
         linearise(cables)
         _set_left(slopes, cables, poses, rows, scale)
@@ -142,11 +142,11 @@ def _start(
     n = cables.shape[0]
     for i in range(n):
         row = cables[i]
-        row[_START] = 0.0
+        fill(row[_START], 0.0)
         for j in range(LANES):
             row[_LEAST, j] = max(least_tension / (row[SHARE, j] * row[CHORD, j]), _LEAST_PULL)
     _set_left(slopes, cables, poses, rows, scale)
-    poses[GOAL] = _REGULAR_START
+    fill(poses[GOAL], _REGULAR_START)
     _set_normal(normal, slopes, cables, poses, rows.size)
     solve_lanes(normal, n, n + 1)
     for i in range(n):
