@@ -7,7 +7,7 @@ from designer.kernel.compiling import element, inner
 
 
 @element
-def copy(source: FloatArray, target: FloatArray) -> None:
+def copy(source: FloatArray | IntArray, target: FloatArray | IntArray) -> None:
     """Copy numbers (n,); to assign an array would compile messages about shapes, for seconds."""
     for k in range(target.size):
         target[k] = source[k]

@@ -27,6 +27,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.compiling import element, inner
 from designer.kernel.cone import Cone, new_cone, normalise, reach, restart
+from designer.kernel.linear import copy
 from designer.kernel.pose import FORCE, Pose, along
 from designer.kernel.table import CHORD, KAPPA, LEVEL, LIFT, SHARE, STRENGTH, X2, D
 from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
@@ -212,7 +213,8 @@ def _cut(pose: Pose, body: CableRanges, part: int, n_points: int) -> bool:
             widest, cable, at = apart, i, end
     if cable < 0:
         return False
-    cuts[part + 1] = cuts[part]
+    for side in range(2):
+        copy(cuts[part, side], cuts[part + 1, side])
     cuts[part, 1, cable] = cuts[part + 1, 0, cable] = at
     return True
 
