@@ -14,8 +14,8 @@ from designer.model.prism import Prism
 from designer.model.verdict import Verdict, are_open
 from designer.study import Study
 
-_LIMIT_M = 1e-7
-"""Error of the limit."""
+_LIMIT = 1e-7
+"""Error of the limit, over the way to the edge. Nearer it is not proved that no cable holds a pose."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -142,5 +142,5 @@ def first_failure_m(
     def sign(distance_m: float) -> float:
         return 1.0 if is_held(at(np.array([distance_m])))[0] else -1.0
 
-    # Nearer to the limit it is not proved any more that no cable holds the pose.
-    return float(bisect(sign, distance_m[failed[0] - 1], distance_m[failed[0]], xtol=_LIMIT_M))
+    ends = distance_m[failed[0] - 1], distance_m[failed[0]]
+    return float(bisect(sign, *ends, xtol=_LIMIT * distance_m[0]))
