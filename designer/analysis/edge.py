@@ -15,7 +15,7 @@ from designer.model.verdict import Verdict, are_open
 from designer.study import Study
 
 _LIMIT = 1e-7
-"""Error of the limit, over the way to the edge. Nearer it is not proved that no cable holds a pose."""
+"""Error of the limit over the way to the edge; nearer it is not proved that no cable holds."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
