@@ -1,6 +1,6 @@
 """Newton's method on a block of poses at once, one a lane; see `designer.kernel.square`.
 
-`cables` is (n_cables, rows of the table, LANES), `poses` (POSE_ROWS, LANES).
+`cables` is (n_cables, rows of the table, n_lanes), `poses` (POSE_ROWS, n_lanes).
 """
 
 from __future__ import annotations
@@ -50,10 +50,10 @@ _LEAST_START = 0.01
 
 
 @inner
-def lanes_of(indices: IntArray, first: int) -> IntArray:
+def lanes_of(indices: IntArray, first: int, width: int = LANES) -> IntArray:
     """Return the poses of a block: from `first`, the last one repeated where there are no more."""
-    lane = np.empty(LANES, dtype=np.int64)
-    for j in range(LANES):
+    lane = np.empty(width, dtype=np.int64)
+    for j in range(width):
         lane[j] = indices[min(first + j, indices.size - 1)]
     return lane
 
@@ -66,10 +66,10 @@ def place(cables: FloatArray, poses: FloatArray, situation: Situation, lane: Int
     """
     for i in range(cables.shape[0]):
         row = cables[i]
-        for j in range(LANES):
+        for j in range(lane.size):
             place_cable(row, j, situation, lane[j], i)
             straighten(row, j, 0.5)
-    for j in range(LANES):
+    for j in range(lane.size):
         load = load_of(situation, lane[j])
         for axis in range(6):
             poses[LOAD + axis, j] = load[axis]
@@ -79,7 +79,7 @@ def place(cables: FloatArray, poses: FloatArray, situation: Situation, lane: Int
 def put_cables(cables: FloatArray, figures: CableFigures, lane: IntArray) -> None:
     """Fill the figures of the cables of one block."""
     for i in range(cables.shape[0]):
-        for j in range(LANES):
+        for j in range(lane.size):
             put_cable(cables[i], j, figures, lane[j], i)
 
 
@@ -88,7 +88,7 @@ def linearise(cables: FloatArray) -> None:
     """Condense each cable's length: pull and top tension as linear functions of the step in p."""
     for i in range(cables.shape[0]):
         row = cables[i]
-        for j in range(LANES):
+        for j in range(cables.shape[2]):
             condense(row, j)
 
 
@@ -108,11 +108,11 @@ def assemble(A: FloatArray, cables: FloatArray, poses: FloatArray, rows: IntArra
         for i in range(n):
             row, slope = cables[i], A[m, i]
             if is_level:  # nothing to lift: the same, but quicker
-                for j in range(LANES):
+                for j in range(poses.shape[1]):
                     slope[j] = row[SHARE, j] * row[level, j]
                     rest[j] -= slope[j] * row[P, j]
                 continue
-            for j in range(LANES):
+            for j in range(poses.shape[1]):
                 w, across, up = row[SHARE, j], row[level, j], row[lift, j]
                 slope[j] = w * (across + up * row[V_P, j])
                 rest[j] -= w * (across * row[P, j] + up * row[V, j])
@@ -125,7 +125,7 @@ def aim_at_strength(poses: FloatArray, A: FloatArray, cables: FloatArray) -> Non
     n = cables.shape[0]
     for i in range(n):
         row = cables[i]
-        for j in range(LANES):
+        for j in range(poses.shape[1]):
             slope = row[T_P, j] * A[i, n + 1, j]
             room = row[STRENGTH, j] - row[T, j] - row[T_P, j] * A[i, n, j]
             bound = room / slope if slope > 0.0 else np.inf
@@ -135,7 +135,7 @@ def aim_at_strength(poses: FloatArray, A: FloatArray, cables: FloatArray) -> Non
 @inner
 def approach(poses: FloatArray, gently: bool) -> None:
     """Move c to its goal; gently, down by no more than a factor, and only once p has followed."""
-    for j in range(LANES):
+    for j in range(poses.shape[1]):
         old = poses[C, j]
         limit = _LARGEST_FALL * old if poses[STEP, j] < _FOLLOWED else old
         c = max(poses[GOAL, j], limit) if gently else poses[GOAL, j]
@@ -149,7 +149,7 @@ def advance(cables: FloatArray, A: FloatArray, poses: FloatArray) -> None:
     n = cables.shape[0]
     for i in range(n):
         row = cables[i]
-        for j in range(LANES):
+        for j in range(poses.shape[1]):
             old = row[P, j]
             new = min(max(old + A[i, n, j] + poses[C, j] * A[i, n + 1, j], 0.2 * old), 5.0 * old)
             length = row[L, j]
@@ -166,7 +166,7 @@ def first_guess(cables: FloatArray, A: FloatArray, poses: FloatArray) -> None:
     n = cables.shape[0]
     for i in range(n):
         row = cables[i]
-        for j in range(LANES):
+        for j in range(poses.shape[1]):
             p = A[i, n, j] + poses[C, j] * A[i, n + 1, j]
             row[P, j] = p if p > _LEAST_START else _LEAST_START
             row[STRAIGHT, j] = row[SHARE, j] * A[i, n + 1, j] * row[L, j]
@@ -182,7 +182,7 @@ def normal_equations(normal: FloatArray, A: FloatArray, m: int, right: int) -> N
             own = A[r, i]
             for k in range(n + 1):
                 other, entry = A[r, k if k < n else right], normal[i, k]
-                for j in range(LANES):
+                for j in range(own.size):
                     entry[j] += own[j] * other[j]
 
 

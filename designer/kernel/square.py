@@ -78,6 +78,8 @@ _ATTEMPTS = ((5, 1e-6, 0.0), (12, 1e-6, 0.0), (60, 1e-11, 0.0), (120, 1e-11, 30.
 """Iterations, relative step at which Newton stops, and lightness of the start of each attempt; only
 the poses that fail go on to the next one. Newton converges quadratically, so as a rule a step of
 1e-6 leaves an error near 1e-12."""
+_VECTOR = 4
+"""Lanes that a processor computes at once: a block of fewer poses has no more lanes than these."""
 _ON_BOUNDARY = 1e-12
 """Compression over the largest tension that is rounding: the pose is on the hull's boundary."""
 _SINGULAR = 1e12
@@ -99,17 +101,17 @@ def solve_range(
     """
     n, rows = situation.attachments.shape[0], situation.rows
     sizing = inverse_weight[0] < 0.0
-    cables = np.empty((n, LANE_ROWS, LANES))
-    A = np.empty((n + 1, n + 2, LANES))
-    poses = np.empty((POSE_ROWS, LANES))
     pending = np.arange(start, stop)
     for iterations, step, lightness in _ATTEMPTS:
-        failed = 0
-        for first in range(0, pending.size, LANES):
-            lane = lanes_of(pending, first)
+        failed, width = 0, min(LANES, -(-pending.size // _VECTOR) * _VECTOR)
+        cables = np.empty((n, LANE_ROWS, width))
+        A = np.empty((n + 1, n + 2, width))
+        poses = np.empty((POSE_ROWS, width))
+        for first in range(0, pending.size, width):
+            lane = lanes_of(pending, first, width)
             place(cables, poses, situation, lane)
             put_cables(cables, figures, lane)
-            for j in range(LANES):
+            for j in range(width):
                 poses[GOAL, j] = inverse_weight[lane[j] if inverse_weight.size > 1 else 0]
             _solve_block(cables, A, poses, rows, sizing, iterations, step, lightness)
             evaluate(cables)
@@ -117,7 +119,7 @@ def solve_range(
             if not sizing:
                 _refuse_other_weights(poses)
             _store(out, cables, poses, lane, sizing)
-            for j in range(min(LANES, pending.size - first)):
+            for j in range(min(width, pending.size - first)):
                 # Negated, so that NaN counts as failed.
                 if not poses[RESIDUAL, j] <= TOLERANCE:
                     pending[failed] = lane[j]
@@ -152,7 +154,7 @@ def _solve_block(
         if sizing:
             aim_at_strength(poses, A, cables)
         if iteration == 0:
-            for j in range(LANES):
+            for j in range(poses.shape[1]):
                 poses[C, j] = poses[GOAL, j] + lightness * abs(poses[GOAL, j])
             first_guess(cables, A, poses)
             fill(poses[STEP], 0.0)
@@ -168,7 +170,7 @@ def evaluate(cables: FloatArray) -> None:
     """Put the true pull, top tension and closure error of the state into the cable rows."""
     for i in range(cables.shape[0]):
         row = cables[i]
-        for j in range(LANES):
+        for j in range(cables.shape[2]):
             F, _, F_l, v, _, _, t, _, _ = unit_cable(
                 row[P, j], row[L, j], row[X2, j], row[D, j], row[KAPPA, j]
             )
@@ -185,23 +187,23 @@ def check(poses: FloatArray, cables: FloatArray, rows: IntArray) -> None:
     The balance in the components `rows`, moments over the reach of the attachments, ends in row
     `REST`.
     """
-    for j in range(LANES):
+    for j in range(poses.shape[1]):
         poses[SCALE, j] = abs(poses[C, j]) * _size_of_force(poses, j)
         poses[REACH, j] = 1e-300
         poses[CLOSURE, j] = poses[RESIDUAL, j] = poses[OVERLOAD, j] = poses[HIGHEST, j] = 0.0
         poses[LOWEST, j] = np.inf
     for m in rows:
-        for j in range(LANES):
+        for j in range(poses.shape[1]):
             poses[REST + m, j] = -poses[C, j] * poses[LOAD + m, j]
         for i in range(cables.shape[0]):
             row = cables[i]
-            for j in range(LANES):
+            for j in range(poses.shape[1]):
                 poses[REST + m, j] += row[SHARE, j] * (
                     row[LEVEL + m, j] * row[P, j] + row[LIFT + m, j] * row[V, j]
                 )
     for i in range(cables.shape[0]):
         row = cables[i]
-        for j in range(LANES):
+        for j in range(poses.shape[1]):
             poses[SCALE, j] = max(poses[SCALE, j], row[SHARE, j] * row[T, j])
             poses[REACH, j] = max(poses[REACH, j], row[LEVER, j])
             poses[CLOSURE, j] = max(poses[CLOSURE, j], row[L_0, j])
@@ -212,7 +214,7 @@ def check(poses: FloatArray, cables: FloatArray, rows: IntArray) -> None:
             straight = row[STRAIGHT, j]
             poses[LOWEST, j] = min(poses[LOWEST, j], straight) + 0.0 * straight
             poses[HIGHEST, j] = max(poses[HIGHEST, j], abs(straight)) + 0.0 * straight
-    for j in range(LANES):
+    for j in range(poses.shape[1]):
         force = 0.0
         for m in rows:
             part = abs(poses[REST + m, j])
@@ -228,7 +230,7 @@ def check(poses: FloatArray, cables: FloatArray, rows: IntArray) -> None:
 @inner
 def _refuse_other_weights(poses: FloatArray) -> None:
     """Leave unsolved what balances cables that are lighter still than those asked for."""
-    for j in range(LANES):
+    for j in range(poses.shape[1]):
         if poses[C, j] != poses[GOAL, j]:
             poses[RESIDUAL, j] = np.inf
 
@@ -243,7 +245,7 @@ def _store(
     out: Answers, cables: FloatArray, poses: FloatArray, lane: IntArray, sizing: bool
 ) -> None:
     """Write lengths [m] and forces [N] of solved poses; NaN for all others."""
-    for j in range(LANES):
+    for j in range(lane.size):
         at, c, overload = lane[j], poses[C, j], poses[OVERLOAD, j]
         verdict = judge(poses[RESIDUAL, j], c, overload, sizing)
         w = write_pose(out, at, verdict, c, poses[CLOSURE, j], poses[REST, j])
