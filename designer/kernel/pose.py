@@ -80,6 +80,11 @@ _ALONG = 1e-5
 
 FORCE, SIZE, REACH = range(3)
 
+_BLOCK = 8
+"""Cables that are bent at once."""
+_GIVEN = (P, X2, D, KAPPA)
+_BENT = (L, L_0, L_P, V, V_P, T, T_P, V_PP, T_PP)
+
 
 class Pose(NamedTuple):
     """One pose.
@@ -97,6 +102,8 @@ class Pose(NamedTuple):
         [m].
     least_pulls : array (n_nodes, 2)
         See `designer.kernel.least_pull`.
+    block : array (16 rows of cables,)
+        Some of the table's rows for a few cables; see `bend`.
     """
 
     cables: FloatArray
@@ -105,6 +112,7 @@ class Pose(NamedTuple):
     rest: FloatArray
     scale: FloatArray
     least_pulls: FloatArray
+    block: FloatArray
 
 
 class Ask(NamedTuple):
@@ -125,7 +133,8 @@ def new_pose(situation: Situation, figures: CableFigures) -> Pose:
     """Return the arrays of a pose."""
     cables = np.zeros((_ROWS, situation.attachments.shape[0]))
     least_pulls = figures.least_pulls
-    return Pose(cables, situation.rows, np.zeros(6), np.zeros(6), np.ones(3), least_pulls)
+    block = np.zeros(16 * _BLOCK)
+    return Pose(cables, situation.rows, np.zeros(6), np.zeros(6), np.ones(3), least_pulls, block)
 
 
 @inner
@@ -242,32 +251,60 @@ def _closing_length(p: float, X2: float, D: float, kappa: float) -> float:
 
 
 @inner
-def _settle(
-    p: FloatArray, X2: FloatArray, D: FloatArray, kappa: FloatArray, length: FloatArray
-) -> None:
-    """Close each cable at its pull: rows of their own, so that it vectorises."""
-    for i in range(length.size):
-        length[i] = _closing_length(p[i], X2[i], D[i], kappa[i])
+def bend(pose: Pose) -> None:
+    """Close each cable at its present pull; first and second slopes along the closure."""
+    c, block = pose.cables, pose.block
+    n = c.shape[1]
+    for first in range(0, n, _BLOCK):
+        for j in range(_BLOCK):
+            i = min(first + j, n - 1)  # the last cable again where there are no more
+            for k in range(len(_GIVEN)):
+                block[k * _BLOCK + j] = c[_GIVEN[k], i]
+        _bend_block(block)
+        for j in range(min(_BLOCK, n - first)):
+            i = first + j
+            for k in range(len(_BENT)):
+                c[_BENT[k], i] = block[(len(_GIVEN) + k) * _BLOCK + j]
+            if c[LEAST, i] > 0.0:
+                p, length_p, v, v_p = c[P, i], c[L_P, i], c[V, i], c[V_P, i]
+                lowest = _lowest_tension(c, i, p, c[L, i] + c[L_0, i], length_p, v, v_p)
+                c[LOWEST, i], c[LOWEST_P, i] = lowest
+                step, at = _ALONG * p, (len(_GIVEN) + len(_BENT)) * _BLOCK + j
+                length_p, v, v_p = block[at], block[at + _BLOCK], block[at + 2 * _BLOCK]
+                length = c[L, i] + step * c[L_P, i]
+                _, slope = _lowest_tension(c, i, p + step, length, length_p, v, v_p)
+                c[LOWEST_PP, i] = (slope - c[LOWEST_P, i]) / step
 
 
 @inner
-def bend(pose: Pose) -> None:
-    """Close each cable at its present pull; first and second slopes along the closure."""
-    c = pose.cables
-    _settle(c[P], c[X2], c[D], c[KAPPA], c[L])
-    linearise(pose)
-    for i in range(c.shape[1]):
-        step = _ALONG * c[P, i]
-        p, length = c[P, i] + step, c[L, i] + step * c[L_P, i]
-        _, F_p, F_l, v, v_p, v_l, _, t_p, t_l = unit_cable(
-            p, length, c[X2, i], c[D, i], c[KAPPA, i]
+def _bend_block(block: FloatArray) -> None:
+    """Fill the rows `_BENT` of a block, then length and lift a step ahead with their slopes.
+
+    All in one array, at distances that the compiler knows, so that it vectorises.
+    """
+    for j in range(_BLOCK):
+        p, X2, D, kappa = block[j], block[_BLOCK + j], block[2 * _BLOCK + j], block[3 * _BLOCK + j]
+        length = _closing_length(p, X2, D, kappa)
+        F, F_p, F_l, v, v_p, v_l, t, t_p, t_l = unit_cable(p, length, X2, D, kappa)
+        l_0, l_p = -F / F_l, -F_p / F_l
+        lift_p, top_p = v_p + v_l * l_p, t_p + t_l * l_p
+        step = _ALONG * p
+        _, G_p, G_l, u, u_p, u_l, _, r_p, r_l = unit_cable(
+            p + step, length + step * l_p, X2, D, kappa
         )
-        lp = -F_p / F_l
-        c[V_PP, i] = (v_p + v_l * lp - c[V_P, i]) / step
-        c[T_PP, i] = (t_p + t_l * lp - c[T_P, i]) / step
-        if c[LEAST, i] > 0.0:
-            _, slope = _lowest_tension(c, i, p, length, lp, v, v_p + v_l * lp)
-            c[LOWEST_PP, i] = (slope - c[LOWEST_P, i]) / step
+        ahead_p = -G_p / G_l
+        block[4 * _BLOCK + j] = length
+        block[5 * _BLOCK + j] = l_0
+        block[6 * _BLOCK + j] = l_p
+        block[7 * _BLOCK + j] = v + v_l * l_0
+        block[8 * _BLOCK + j] = lift_p
+        block[9 * _BLOCK + j] = t + t_l * l_0
+        block[10 * _BLOCK + j] = top_p
+        block[11 * _BLOCK + j] = (u_p + u_l * ahead_p - lift_p) / step
+        block[12 * _BLOCK + j] = (r_p + r_l * ahead_p - top_p) / step
+        block[13 * _BLOCK + j] = ahead_p
+        block[14 * _BLOCK + j] = u
+        block[15 * _BLOCK + j] = u_p + u_l * ahead_p
 
 
 @element
