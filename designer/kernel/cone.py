@@ -32,7 +32,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray, VerdictArray
 from designer.kernel.answer import NOT_CONVERGED, NOT_FOUND, OUTSIDE_HULL, RANK_DEFICIENT
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import inner, kernel
+from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.linear import copy
 from designer.kernel.pose import (
     LEAST,
@@ -158,6 +158,15 @@ def _set_rays(pose: Pose, cone: Cone) -> bool:
     return 0.0 < normalise(cone.load) < np.inf
 
 
+@element
+def _product(rows: FloatArray, k: int, vector: FloatArray) -> float:
+    """Return the product of a row with a vector: to make an array of the row would take longer."""
+    total = 0.0
+    for q in range(vector.size):
+        total += rows[k, q] * vector[q]
+    return total
+
+
 @inner
 def _along(a: FloatArray, b: FloatArray) -> float:
     total = 0.0
@@ -197,7 +206,7 @@ def _clear(vector: FloatArray, basis: FloatArray, count: int) -> float:
     """Take its share in the first rows of a basis from a vector, twice; return what is left."""
     for _ in range(2):
         for k in range(count):
-            share = _along(basis[k], vector)
+            share = _product(basis, k, vector)
             for q in range(vector.size):
                 vector[q] -= share * basis[k, q]
     return math.sqrt(_along(vector, vector))
@@ -220,7 +229,7 @@ def reach(cone: Cone, n_rays: int, count: int) -> int:
     for _ in range(_MOST_TURNS + n_rays):
         best, entering = _ENTERS, -1
         for j in range(n_rays):
-            gain = _along(rays[j], cone.rest)
+            gain = _product(rays, j, cone.rest)
             if gain > best and share[j] == 0.0:
                 best, entering = gain, j
         if entering < 0:
@@ -272,8 +281,10 @@ def _project(cone: Cone, count: int) -> bool:
         normalise(basis[k])
     for k in range(count):
         for j in range(k, count):
-            triangle[k, j] = _along(basis[k], cone.rays[cone.used[j]])
-        triangle[k, count] = _along(basis[k], cone.load)
+            triangle[k, j] = 0.0
+            for q in range(cone.load.size):
+                triangle[k, j] += basis[k, q] * cone.rays[cone.used[j], q]
+        triangle[k, count] = _product(basis, k, cone.load)
     for k in range(count - 1, -1, -1):
         total = triangle[k, count]
         for j in range(k + 1, count):
@@ -297,6 +308,6 @@ def _separation(cone: Cone, n_rays: int) -> float:
         return 0.0
     largest = _ROUNDING
     for j in range(n_rays):
-        largest = max(largest, _along(cone.rest, cone.rays[j]))
+        largest = max(largest, _product(cone.rays, j, cone.rest))
     separation = _along(cone.rest, cone.load)
     return separation if separation > max(_LEAST_SEPARATION, _BEYOND * largest) else 0.0

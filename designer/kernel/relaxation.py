@@ -10,7 +10,8 @@ It is sought from the body's points: of those found so far the mixture nearest t
 rest, the next y, and the point farthest along y is the next (Wolfe, Finding the nearest point in a
 polytope, Mathematical Programming 11 (1976)). Where this ends without a proof, the hull may be too
 wide, of cables that could either hang or be pulled tight: the range of the cable whose lift is
-farthest from its own is cut in two, and each part is to be proved, up to some number of parts.
+farthest from its own is cut in two, and each part is to be proved, from those points of the last
+that lie in it, up to some number of parts.
 
 Whoever found y, the sum is bounded from above. Neither v nor g is concave or convex: the maximum of
 g is bounded piece by piece of the range, by the ends of each and, where v bends down between them,
@@ -35,7 +36,7 @@ from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
 _PIECES = 64
 _MARGIN = 1e-3
 """Of what is bounded piece by piece: a lift may bend both ways in one."""
-_MOST_PARTS = 16
+_MOST_PARTS = 32
 _MOST_TURNS = 40
 _STILL = 1e-3
 """Of the squared distance from the loads: what a further point has to bring it nearer by."""
@@ -95,10 +96,10 @@ def new_body(m: int, n: int) -> CableRanges:
 def misses_loads(pose: Pose, body: CableRanges) -> bool:
     """Tell whether it is proved that no c above zero is left."""
     _divide(pose, body)
-    parts = 1
+    parts, n_points = 1, 1
     for _ in range(_MOST_PARTS):
-        n_points = _approach(pose, body, body.cuts[parts - 1])
-        if n_points == 0:
+        n_points, is_proved = _approach(pose, body, parts - 1, n_points)
+        if is_proved:
             parts -= 1
         elif _cut(pose, body, parts - 1, n_points):
             parts += 1
@@ -120,9 +121,12 @@ def is_proved_by(pose: Pose, body: CableRanges, dual: FloatArray, is_divided: bo
 
 
 @inner
-def _approach(pose: Pose, body: CableRanges, cut: IntArray) -> int:
-    """Bring a mixture of points of a part near to the loads; return how many, 0 for a proof."""
-    cone, wrench = body.cone, body.wrench
+def _approach(pose: Pose, body: CableRanges, part: int, n_points: int) -> tuple[int, bool]:
+    """Bring a mixture of points of a part near to the loads; return how many, and if it is proved.
+
+    From those of `n_points` points of other parts that lie in this one.
+    """
+    cone, wrench, cut = body.cone, body.wrench, body.cuts[part]
     m = wrench.size
     cone.load[:], cone.rays[0] = 0.0, 0.0
     cone.load[m] = 1.0
@@ -130,11 +134,18 @@ def _approach(pose: Pose, body: CableRanges, cut: IntArray) -> int:
         wrench[k] = pose.load[pose.rows[k]]
         cone.rays[0, k] = -wrench[k]
     normalise(cone.rays[0])
+    n_points = _keep(body, cut, n_points)
     restart(cone)
-    in_use = 0
-    for turn in range(1, 1 + _MOST_TURNS):
+    in_use = reach(cone, n_points, 0)
+    if in_use > 0:
+        copy(cone.rest[:m], wrench)
+        normalise(wrench)
+    else:
+        n_points, in_use = 1, 0
+        restart(cone)
+    for turn in range(n_points, 1 + _MOST_TURNS):
         if _is_apart(pose, body, cut, turn):
-            return 0
+            return turn, True
         ahead = 0.0
         for k in range(m + 1):
             ahead += cone.rest[k] * cone.rays[turn, k]
@@ -144,11 +155,25 @@ def _approach(pose: Pose, body: CableRanges, cut: IntArray) -> int:
         for k in range(m + 1):
             far += cone.rest[k] ** 2
         if in_use < 0 or (turn > 1 and ahead < _STILL * far) or far < _NEAR**2:
-            return turn + 1
-        for k in range(m):
-            wrench[k] = cone.rest[k]
+            return turn + 1, False
+        copy(cone.rest[:m], wrench)
         normalise(wrench)
-    return 1 + _MOST_TURNS
+    return 1 + _MOST_TURNS, False
+
+
+@inner
+def _keep(body: CableRanges, cut: IntArray, n_points: int) -> int:
+    """Keep the points that lie in a part and bear on the mixture; return how many are left."""
+    kept = 1
+    for j in range(1, n_points):
+        is_inside = body.cone.share[j] > 0.0
+        for i in range(cut.shape[1]):
+            is_inside = is_inside and cut[0, i] <= body.ends[j, i] <= cut[1, i]
+        if is_inside:
+            copy(body.cone.rays[j], body.cone.rays[kept])
+            body.ends[kept] = body.ends[j]
+            kept += 1
+    return kept
 
 
 @inner
@@ -227,25 +252,39 @@ def _divide(pose: Pose, body: CableRanges) -> None:
     for i in range(c.shape[1]):
         low, high = pulls_borne(pose, i, _FEW_HALVINGS)
         ratio = (high / low) ** (1.0 / _PIECES)
-        before = 0.0
         for j in range(_PIECES + 1):
-            up, slope, _ = hanging(c, i, low)
-            body.pulls[i, j], body.lifts[i, j] = low, up
-            body.bulges[i, j] = 0.25 * low * (1.0 - 1.0 / ratio) * abs(slope - before)
-            before = slope
+            body.pulls[i, j] = low
             low *= ratio
+        bulges = body.bulges[i]
+        _hang(body.pulls[i], c[X2, i], c[D, i], c[KAPPA, i], body.lifts[i], bulges)
+        for j in range(_PIECES, 0, -1):
+            width = body.pulls[i, j] * (1.0 - 1.0 / ratio)
+            bulges[j] = 0.25 * width * abs(bulges[j] - bulges[j - 1])
+
+
+@inner
+def _hang(
+    p: FloatArray, X2: float, D: float, kappa: float, lift: FloatArray, slope: FloatArray
+) -> None:
+    """Fill upward pulls and their slopes at many pulls of a cable: alone, so that it vectorises."""
+    for j in range(p.size):
+        lift[j], slope[j], _ = _hanging(p[j], X2, D, kappa)
 
 
 @element
 def hanging(c: FloatArray, i: int, p: float) -> tuple[float, float, float]:
     """Return the upward pull at a pull, its slope, and the top tension; to 1e-9."""
-    X2_, D_, kappa = c[X2, i], c[D, i], c[KAPPA, i]
+    return _hanging(p, c[X2, i], c[D, i], c[KAPPA, i])
+
+
+@element
+def _hanging(p: float, X2: float, D: float, kappa: float) -> tuple[float, float, float]:
     theta = 0.5 / p
-    straight = np.sqrt(D_ * D_ + X2_ * (1.0 + theta * theta * sag_series(theta * theta)))
+    straight = np.sqrt(D * D + X2 * (1.0 + theta * theta * sag_series(theta * theta)))
     length = straight / (1.0 + kappa * p * straight)
-    F, _, F_l, _, _, _, _, _, _ = unit_cable(p, length, X2_, D_, kappa)
+    F, _, F_l, _, _, _, _, _, _ = unit_cable(p, length, X2, D, kappa)
     length -= F / F_l
-    F, F_p, F_l, v, v_p, v_l, t, _, t_l = unit_cable(p, length, X2_, D_, kappa)
+    F, F_p, F_l, v, v_p, v_l, t, _, t_l = unit_cable(p, length, X2, D, kappa)
     rest = F / F_l
     return v - v_l * rest, v_p - v_l * F_p / F_l, t - t_l * rest
 
