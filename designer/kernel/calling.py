@@ -163,14 +163,19 @@ def plain(values: ArrayLike) -> FloatArray:
 def share_out(solve: Callable[..., None], count: int, share: int, *arguments: Any) -> None:
     """Call ``solve(first, last, …)`` for all of ``count``, on all processors where there are many.
 
-    Each call gets as many as a ``share``.
+    Each call gets as many as a ``share``; a thread that is done takes the next, this one as well.
     """
-    calls = [(at, min(at + share, count), *arguments) for at in range(0, count, share)]
-    if len(calls) == 1:
-        solve(*calls[0])
-    else:
-        for future in [_pool().submit(solve, *call) for call in calls]:
-            future.result()
+    firsts = iter(range(0, count, share))
+
+    def work() -> None:
+        for first in firsts:
+            solve(first, min(first + share, count), *arguments)
+
+    helpers = min(os.cpu_count() or 1, -(-count // share)) - 1
+    futures = [_pool().submit(work) for _ in range(helpers)]
+    work()
+    for future in futures:
+        future.result()
 
 
 @cache
