@@ -171,7 +171,8 @@ def _keep(body: CableRanges, cut: IntArray, n_points: int) -> int:
             is_inside = is_inside and cut[0, i] <= body.ends[j, i] <= cut[1, i]
         if is_inside:
             copy(body.cone.rays[j], body.cone.rays[kept])
-            body.ends[kept] = body.ends[j]
+            for i in range(cut.shape[1]):
+                body.ends[kept, i] = body.ends[j, i]
             kept += 1
     return kept
 
