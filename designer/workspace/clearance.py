@@ -29,7 +29,7 @@ from designer.workspace.shapes import Curves, Polylines
 PLATFORM = -1
 """Stands for the platform where a pair is a cable and the platform."""
 
-_COARSE, _FINE = 24, 12
+_ROUGH, _COARSE, _FINE = 8, 24, 12
 _FINER_PASSES = 3
 _COINCIDENT = 1e-9
 _CHUNK = 256
@@ -85,6 +85,32 @@ def smallest_clearance(statics: Statics) -> Clearance:
     return clearance_among_cables(statics).nearer(clearance_to_platform(statics))
 
 
+def distances_among_cables_m(statics: Statics) -> FloatArray:
+    """Return how near those of each pair come (n_poses, n_pairs), along rough pieces [m].
+
+    Of `cable_pairs`, in poses (n_poses,); NaN where a pose is not solved.
+    """
+    n, pairs = statics.robot.n_cables, np.array(cable_pairs(statics.robot)).reshape(-1, 2)
+    distance = np.full((len(statics.verdict), len(pairs)), np.nan)
+    for rows in _solved_chunks(statics):
+        lines = _whole(Curves.of(statics.part(rows)), _ROUGH)
+        first, second = ((n * np.arange(len(rows))[:, None] + pair).ravel() for pair in pairs.T)
+        between, _, _ = _pieces(lines.points_m[first], lines.points_m[second])
+        distance[rows] = between.reshape(-1, len(pairs))
+    return distance
+
+
+def _solved_chunks(statics: Statics) -> list[IntArray]:
+    solved = np.flatnonzero(statics.is_solved)
+    return [solved[at : at + _CHUNK] for at in range(0, len(solved), _CHUNK)]
+
+
+def _whole(curves: Curves, pieces: int) -> Polylines:
+    """Return the curves from end to end."""
+    count = len(curves.length_m)
+    return curves.polylines(np.arange(count), np.zeros(count), np.ones(count), pieces)
+
+
 def _in_chunks(
     statics: Statics, function: Callable[[Statics, Curves], tuple[IntArray, Clearance] | None]
 ) -> Clearance:
@@ -93,9 +119,7 @@ def _in_chunks(
     n = int(np.prod(shape, dtype=np.int64))
     missing = np.full(n, np.nan), np.full((n, 2), PLATFORM), np.full((n, 3), np.nan)
     clearance = Clearance(*missing, np.full(n, np.nan))
-    solved = np.flatnonzero(statics.is_solved)
-    for at in range(0, len(solved), _CHUNK):
-        rows = solved[at : at + _CHUNK]
+    for rows in _solved_chunks(statics):
         poses = statics.part(rows)
         part = function(poses, Curves.of(poses))
         if part is None:
@@ -137,9 +161,7 @@ def _among_cables(statics: Statics, curves: Curves) -> tuple[IntArray, Clearance
     pairs = np.array(cable_pairs(robot), dtype=np.int64).reshape(-1, 2)
     if len(pairs) == 0:
         return None
-    n, count = robot.n_cables, len(statics.verdict)
-    whole_span = np.zeros(count * n), np.ones(count * n)
-    coarse = curves.polylines(np.arange(count * n), *whole_span, _COARSE)
+    n, coarse = robot.n_cables, _whole(curves, _COARSE)
     row, kind = _candidates(coarse, n, pairs)
     first, second = row * n + pairs[kind, 0], row * n + pairs[kind, 1]
     pieces = [_pick(coarse, first), _pick(coarse, second)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,12 +16,15 @@ from designer.workspace.clearance import (
     Clearance,
     clearance_among_cables,
     clearance_to_platform,
+    distances_among_cables_m,
     names_of,
 )
-from designer.workspace.refine import LIGHT, refine_over_branches
+from designer.workspace.refine import LIGHT, refine, refine_over_branches
 
 MOST_SAMPLES = 1000
 """Poses that are looked at before the search between them."""
+_A_CLIMB_EACH = replace(LIGHT, starts=1, finalists=1, revisited=0, tolerance=1e-2, rounds=0)
+"""For each pair of cables: where some cross may be so small a part that no start lies near it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,6 +103,10 @@ def survey(
     statics = solve_sagging(robot, Poses.at(thinned), cable)
     cables, platform = clearance_among_cables(statics), clearance_to_platform(statics)
 
+    def nearness_of_each(places: FloatArray) -> FloatArray:
+        statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=False)
+        return -np.nan_to_num(distances_among_cables_m(statics), nan=np.inf)
+
     def nearest(among: Callable[[Statics], Clearance], sampled: Clearance) -> Nearest | None:
         def clearance(places: FloatArray, seeks_better: bool = True) -> Clearance:
             poses = Poses.at(places)
@@ -110,7 +117,11 @@ def survey(
 
         if np.isnan(sampled.distance_m).all():
             return None
-        (worst,) = refine_over_branches(workspace.space, nearness, thinned, LIGHT)
+        starts = thinned
+        if among is clearance_among_cables and not workspace.space.is_discrete:
+            each = refine(workspace.space, nearness_of_each, thinned, _A_CLIMB_EACH)
+            starts = np.concatenate([thinned, [worst.place for worst in each]])
+        (worst,) = refine_over_branches(workspace.space, nearness, starts, LIGHT)
         closest = clearance(worst.place[None])
         first, second = (int(number) for number in closest.pair[0])
         return Nearest(

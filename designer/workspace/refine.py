@@ -46,7 +46,6 @@ _SHRINKS_AT_CORNER = 0.1
 """Of a cloud about a landmark of the space where nothing rises; a turn tries a factor of 30."""
 _CLOUDS = 3
 """Tried in one turn, each smaller by as much as where nothing rises, once climbs go to the end."""
-_MOST_ROUNDS = 8
 _NEAR_SCALES = 10.0 ** -np.arange(1.0, 8.0)
 
 
@@ -79,6 +78,7 @@ class Effort:
     # Whether each landmark is a start, rather than only those that nothing near them exceeds
     from_landmarks: bool = True
     tolerance: float = 1e-9  # Size of the last cloud, as a share of the space
+    rounds: int = 8  # Fresh samples against what was found, at most
 
 
 LIGHT = Effort(
@@ -249,7 +249,7 @@ class _PoseSearch:
         values = self._ask_each(places, every)
         landmarks = [len(of_search) + np.arange(len(marks)) for of_search in starts]
         self._climb_all(every, places, values, landmarks)
-        for turn in range(1, _MOST_ROUNDS + 1):
+        for turn in range(1, self._effort.rounds + 1):
             every = every[~self._is_over[every]]
             before = self._best[every]
             scatter, near = self._scatter(turn), self._near_the_best(turn, every)
