@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -39,6 +39,9 @@ QUICK_SAMPLES, SLOW_SAMPLES, FEWEST_SAMPLES = 2000, 500, 16
 solve, and in each direction at least."""
 SETTLED_SAMPLES = 64
 """The same where lengths are kept: to follow a platform takes a thousand times as long."""
+_OF_MANY = replace(LIGHT, inside=2048, starts=12)
+"""For many extremes at once, which share what is explored: internal forces jump, so that they have
+maxima beside each other."""
 _MOST_ROUNDS = 4
 """Of turning the loads and searching the pose again; two are enough as a rule."""
 
@@ -143,7 +146,8 @@ def _evaluate_case(
         loaded = loads.directions[number]
         columns = [of_case[k] for k in np.flatnonzero(worst == number)]
         demand = partial(_severity, loaded, workspace, columns)
-        extremes = refine_over_branches(space, demand, places, LIGHT)
+        effort = LIGHT if keeps else _OF_MANY
+        extremes = refine_over_branches(space, demand, places, effort)
         for criterion, extreme in zip(columns, extremes, strict=True):
             if np.isneginf(extreme.demand):  # no pose of the case counts
                 continue
@@ -257,7 +261,7 @@ def extreme_lengths_m(loads: CaseLoads) -> tuple[FloatArray, FloatArray]:
         return rope_demand(loaded.robot, loaded.cable, workspace.hangs_below, places, **how)[:, 1:]
 
     starts = workspace.thinned(SLOW_SAMPLES)
-    extremes = refine_over_branches(workspace.space, demand, starts, LIGHT)
+    extremes = refine_over_branches(workspace.space, demand, starts, _OF_MANY)
     lengths = np.array([extreme.demand for extreme in extremes]).reshape(2, -1)
     lengths[np.isinf(lengths)] = np.nan
     return lengths[0], -lengths[1]

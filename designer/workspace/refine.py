@@ -46,6 +46,8 @@ _SHRINKS_AT_CORNER = 0.1
 """Of a cloud about a landmark of the space where nothing rises; a turn tries a factor of 30."""
 _CLOUDS = 3
 """Tried in one turn, each smaller by as much as where nothing rises, once climbs go to the end."""
+_STEEP = 30.0
+"""How many times wider a gap is than the demands above it differ, where they jump."""
 _NEAR_SCALES = 10.0 ** -np.arange(1.0, 8.0)
 
 
@@ -223,6 +225,20 @@ def worst_over_samples(
     if known is not None:
         starts = [np.concatenate(places) for places in zip(starts, known, strict=True)]
     return refine_each_over_branches(workspace.space, demand, starts)
+
+
+def _foot_of_cliff(value: FloatArray, trials: FloatArray) -> FloatArray:
+    """Return the demand (n,) that trials (n, n_trials) fall to where it jumps; -inf where not.
+
+    A jump is the widest gap among them and that of the climb itself (n,), if it is far wider than
+    those above differ.
+    """
+    ascending = np.sort(np.column_stack([trials, value]), axis=1)
+    with np.errstate(invalid="ignore"):
+        gap = np.nan_to_num(np.diff(ascending), nan=0.0, posinf=np.inf)
+    rows, widest = np.arange(len(gap)), gap.argmax(axis=1)
+    above = ascending[:, -1] - ascending[rows, widest + 1]
+    return np.where(gap[rows, widest] > _STEEP * above, ascending[rows, widest], -np.inf)
 
 
 class _PoseSearch:
@@ -414,7 +430,10 @@ class _PoseSearch:
         return climbs.part(np.sort(np.concatenate(chosen)))
 
     def _climb(self, climbs: Climbs, tolerance: float, *, slides: bool = False) -> None:
-        """Climb until the clouds are smaller than the tolerance, along what does not count."""
+        """Climb until the clouds are smaller than the tolerance.
+
+        Along the border of what counts, and of where the demand jumps.
+        """
         self._phase += 1
         clouds = _CLOUDS if slides else 1
         is_corner = self._are_marks(climbs.at)
@@ -438,11 +457,12 @@ class _PoseSearch:
             in_cloud = demand[:, :-1].reshape(len(active), clouds, -1).max(axis=2)
             in_cloud[:, 0] = np.maximum(in_cloud[:, 0], demand[:, -1])
             rises = in_cloud[:, 0] > climb.value
-            outside = np.isneginf(demand[:, first])
+            foot = _foot_of_cliff(climb.value, demand[:, first])
+            outside = demand[:, first] <= foot[:, None]
             on_border = np.flatnonzero(slides & ~rises & outside.any(axis=1) & ~outside.all(axis=1))
             if len(on_border):
-                around = trials[on_border, first], demand[on_border, first]
-                slid = self._slide(climb.part(on_border), *around, rng)
+                around = trials[on_border, first], outside[on_border]
+                slid = self._slide(climb.part(on_border), *around, foot[on_border], rng)
                 trials[on_border, -1], demand[on_border, -1] = slid
                 in_cloud[on_border, 0] = np.maximum(in_cloud[on_border, 0], slid[1])
             highest = demand.argmax(axis=1)
@@ -461,15 +481,31 @@ class _PoseSearch:
 
     def _ask_about(self, climbs: Climbs, places: FloatArray) -> FloatArray:
         """Return each climb's own demand (n_climbs, …) at places (n_climbs, …, n_coordinates)."""
-        flat = places.reshape(len(climbs), -1, len(self._size))
-        search, extreme = (np.repeat(k, flat.shape[1]) for k in (climbs.search, climbs.extreme))
+        rows = np.column_stack([climbs.search, places.reshape(len(climbs), -1)])
+        # Climbs of several extremes that stand at the same place try the same places.
+        _, first, each = np.unique(
+            rows.view(f"V{rows[0].nbytes}").ravel(), return_index=True, return_inverse=True
+        )
+        distinct = np.sort(first)
+        flat = places[distinct].reshape(len(distinct), -1, len(self._size))
+        search = np.repeat(climbs.search[distinct], flat.shape[1])
         demand = self._ask(flat.reshape(-1, len(self._size)), search)
-        return demand[np.arange(len(search)), extreme].reshape(places.shape[:-1])
+        demand = demand.reshape(*flat.shape[:2], -1)
+        own = demand[np.searchsorted(distinct, first[each]), :, climbs.extreme]
+        return own.reshape(places.shape[:-1])
 
     def _slide(
-        self, climbs: Climbs, trials: FloatArray, values: FloatArray, rng: np.random.Generator
+        self,
+        climbs: Climbs,
+        trials: FloatArray,
+        is_outside: BoolArray,
+        foot: FloatArray,
+        rng: np.random.Generator,
     ) -> tuple[FloatArray, FloatArray]:
-        """Return the best place (n, n_coordinates) on the border of what counts, and its value.
+        """Return the best place (n, n_coordinates) on a border, and its value.
+
+        Beyond it the demand is no larger than the ``foot`` (n,), minus infinite where places do not
+        count; ``is_outside`` tells which trials (n, n_trials) lie there.
 
         Where the largest demand lies on that border, the directions that lead upward and stay
         inside become few. The border's normal is the difference between the trials on either side
@@ -478,7 +514,7 @@ class _PoseSearch:
         size = np.where(self._size > 0.0, self._size, 1.0)
         reach = climbs.radius[:, None, None]
         offsets = np.where(self._is_free, (trials - climbs.at[:, None]) / size, 0.0)
-        outside = np.isneginf(values)[..., None]
+        outside = is_outside[..., None]
         normal = np.where(outside, 0.0, offsets).sum(axis=1) / (~outside).sum(axis=1)
         normal -= np.where(outside, offsets, 0.0).sum(axis=1) / outside.sum(axis=1)
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
@@ -495,7 +531,7 @@ class _PoseSearch:
 
         for _ in range(3):
             part /= 16.0
-            outside_there = np.isneginf(at(low + part * np.arange(1, 16))[1])
+            outside_there = at(low + part * np.arange(1, 16))[1] <= foot[:, None, None]
             low = low + part * outside_there.sum(axis=2, keepdims=True)
         places, demand = (values[:, :, 0] for values in at(low + part))
         highest = demand.argmax(axis=1)

@@ -17,12 +17,19 @@ from pairs.reference import Pose, State, settle, solve
 from pairs.table import analysed
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.reactions import EXTREMES, Reaction, reactions_csv
+from designer.analysis.reactions import EXTREMES, Reaction, reactions_csv, reactions_of
 from designer.analysis.result_json import result_dict
+from designer.io.config import read_study
+from designer.model.load_case import STATIC, Loaded
+from designer.model.prism import Prism
 from designer.model.robot import Poses
+from designer.model.space import Orientations
+from designer.model.workspace import Workspace
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
 from designer.report.render import rendered
+from designer.resources import example_file
+from designer.selection.requirements import CaseLoads
 from designer.statics.inverse import solve_sagging
 from designer.statics.reactions import platform_branch_N
 from designer.workspace.demand import settled
@@ -180,3 +187,19 @@ def test_files_and_page_have_every_reaction(solve_study: Solve) -> None:
     page = rendered(section(Drawings(analysis), "reactions")).body
     assert "the branch from the winch" in page
     assert "robot.winches.positions" not in page
+
+
+@pytest.mark.slow
+def test_largest_reaction_is_found_where_internal_forces_jump() -> None:
+    """Exit point 6 of a body in a turned workspace: 222.1 N by a search from few starts."""
+    study = read_study(example_file("ipanema"))
+    region = Prism.box((-0.36875505, -0.17877119), (-0.61205802, 0.53521205), (0.57007, 1.19715))
+    half_rad = np.array([0.04396161, 0.02867867, 0.04880846])
+    workspace = Workspace(
+        region, samples=50, seed=890, orientations=Orientations.within(-half_rad, half_rad)
+    )
+    cable = study.material.cable(0.0020131)
+    loaded = Loaded(STATIC, (study.robot, cable), study.robot, cable)
+    reactions = reactions_of([CaseLoads(workspace, (loaded,))], lambda _: None)
+    largest = next(r for r in reactions if (r.mast, r.extreme) == (6, "largest"))
+    assert largest.size_N > 232.8
