@@ -379,8 +379,9 @@ def solutions(problem: Problem, pose: Pose, starts: int = 4, seed: int = 0) -> l
         one = (_root if is_square else _least)(equations, equations.start(tension))
         if one is not None:
             found.append(one)
-        if found and not is_square and k:
-            break  # the best of two: others end where these do
+        best = sorted(one.utilisation for one in found)[:2]
+        if not is_square and len(best) == 2 and best[1] <= best[0] * (1.0 + 1e-6):
+            break  # one alone may have ended anywhere
         if found and is_square and not problem.arms_m.any():
             break  # a point mass on as few cables as hold it has one balance
     return found
