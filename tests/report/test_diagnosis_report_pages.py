@@ -191,7 +191,10 @@ def test_rivals_warnings_and_proposals_are_shown(diagnoses: dict[str, Diagnosis]
     report = report_of(doubtful)
     assert diagnosis_page(report).verdict.tone == "doubt"
     text = visible(render_html(report))
-    assert "cannot tell pulley_radius from drum_scale" in text
+    assert "cannot tell pulley_radius from drum_scale. Poses that would are proposed below" in text
+    alike = dataclasses.replace(proposal, separation=0.001 * separation)
+    vain = report_of(dataclasses.replace(doubtful, proposals=(alike,)))
+    assert "would not either in 1000 measurements" in visible(render_html(vain))
     assert "(9.00, 5.00, 2.00) m 41.5 1" in text
     assert "(1.00, 5.00, 2.00) m 0.800 15" in text  # 14.1 measurements
     assert "(1.00, 1.00, 2.00) m 0 over 1000" in text
