@@ -21,6 +21,7 @@ from designer.statics.shape import sag_ratio, string_frequency_Hz
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Selection
 from designer.workspace.clearance import names_of, smallest_clearance
+from designer.workspace.interference import where_pairs_are_near
 
 ROUNDING = 1e-9
 """Relative: how exactly the solver keeps a limit that it chooses the internal forces by."""
@@ -53,6 +54,9 @@ class Criterion:
     capacity : callable or None
         Returns what the quantity is a share of, of each cable (n_cables,) [unit]; None where it is
         in that unit itself.
+    starts : callable or None
+        Returns where to search from beside samples (n, n_coordinates), of the loads, the workspace
+        and those samples.
     why_open : callable or None
         Returns why it is not known to fail where it does not hold there; empty where it fails.
     """
@@ -69,6 +73,7 @@ class Criterion:
     at_rest_after_loss: bool = False
     detail: Callable[[Loaded, Statics], str] | None = None
     capacity: Callable[[Statics], FloatArray] | None = None
+    starts: Callable[[Loaded, Workspace, FloatArray], FloatArray] | None = None
     why_open: Callable[[Statics], str] = lambda _: ""
 
     def severity(self, quantity: FloatArray) -> FloatArray:
@@ -240,6 +245,9 @@ def _of_workspace(workspace: Workspace) -> Iterator[Criterion]:
             at_rest_after_loss=True,
             detail=lambda _, statics: " and ".join(
                 names_of(tuple(smallest_clearance(statics).pair[0]))
+            ),
+            starts=lambda loaded, workspace, places: where_pairs_are_near(
+                loaded.robot, workspace, loaded.cable, places
             ),
         )
 

@@ -146,8 +146,10 @@ def _evaluate_case(
         loaded = loads.directions[number]
         columns = [of_case[k] for k in np.flatnonzero(worst == number)]
         demand = partial(_severity, loaded, workspace, columns)
-        effort = LIGHT if keeps else _OF_MANY
-        extremes = refine_over_branches(space, demand, places, effort)
+        # Where lengths are kept, as many more equilibria would take far too long.
+        known = [c.starts(loaded, workspace, places) for c in columns if c.starts and not keeps]
+        starts, effort = np.concatenate([places, *known]), LIGHT if keeps else _OF_MANY
+        extremes = refine_over_branches(space, demand, starts, effort)
         for criterion, extreme in zip(columns, extremes, strict=True):
             if np.isneginf(extreme.demand):  # no pose of the case counts
                 continue

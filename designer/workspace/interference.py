@@ -14,11 +14,13 @@ from designer.model.workspace import Workspace
 from designer.statics.inverse import Statics, solve_sagging
 from designer.workspace.clearance import (
     Clearance,
+    cable_pairs,
     clearance_among_cables,
     clearance_to_platform,
     distances_among_cables_m,
     names_of,
 )
+from designer.workspace.demand import is_left_out
 from designer.workspace.refine import LIGHT, refine, refine_over_branches
 
 MOST_SAMPLES = 1000
@@ -66,7 +68,7 @@ class Interference:
     clearance_m : float
         What is asked for [m].
     samples, violating : int
-        Poses that were looked at and solved, and those of them that keep less.
+        Poses that were looked at and count, and those of them that keep less.
     among_cables : Nearest or None
         Worst pose for two cables; None where no two cables can be compared.
     to_platform : Nearest or None
@@ -95,32 +97,52 @@ class Interference:
         return self.worst is not None and self.worst.distance_m < self.clearance_m
 
 
+def where_pairs_are_near(
+    robot: Robot, workspace: Workspace, cable: Cable | Cables, places: FloatArray
+) -> FloatArray:
+    """Return where each pair of cables comes near (n, n_coordinates), by a short climb from places.
+
+    Starts for a search of the smallest clearance; none in a space in which every place is tried.
+    """
+
+    def nearness(places: FloatArray) -> FloatArray:
+        statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=False)
+        distance = distances_among_cables_m(statics)
+        distance[is_left_out(statics, workspace.hangs_below)] = np.nan
+        return -np.nan_to_num(distance, nan=np.inf)
+
+    space = workspace.space
+    if space.is_discrete or not cable_pairs(robot):
+        return np.empty((0, space.n_coordinates))
+    ends = np.array([worst.place for worst in refine(space, nearness, places, _A_CLIMB_EACH)])
+    return np.asarray(ends[np.isfinite(ends).all(axis=1)])
+
+
 def survey(
     robot: Robot, workspace: Workspace, cable: Cable | Cables, clearance_m: float
 ) -> Interference:
     """Look for the smallest clearances in a workspace: `MOST_SAMPLES` first, then between them."""
     thinned = workspace.thinned(MOST_SAMPLES)
     statics = solve_sagging(robot, Poses.at(thinned), cable)
-    cables, platform = clearance_among_cables(statics), clearance_to_platform(statics)
 
-    def nearness_of_each(places: FloatArray) -> FloatArray:
-        statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=False)
-        return -np.nan_to_num(distances_among_cables_m(statics), nan=np.inf)
+    def counted(among: Callable[[Statics], Clearance], statics: Statics) -> Clearance:
+        clearance, is_out = among(statics), is_left_out(statics, workspace.hangs_below)
+        return replace(clearance, distance_m=np.where(is_out, np.nan, clearance.distance_m))
+
+    cables = counted(clearance_among_cables, statics)
+    platform = counted(clearance_to_platform, statics)
+    starts = np.concatenate([thinned, where_pairs_are_near(robot, workspace, cable, thinned)])
 
     def nearest(among: Callable[[Statics], Clearance], sampled: Clearance) -> Nearest | None:
         def clearance(places: FloatArray, seeks_better: bool = True) -> Clearance:
             poses = Poses.at(places)
-            return among(solve_sagging(robot, poses, cable, seeks_better=seeks_better))
+            return counted(among, solve_sagging(robot, poses, cable, seeks_better=seeks_better))
 
         def nearness(places: FloatArray, *, seeks_better: bool) -> FloatArray:
             return -np.nan_to_num(clearance(places, seeks_better).distance_m, nan=np.inf)
 
         if np.isnan(sampled.distance_m).all():
             return None
-        starts = thinned
-        if among is clearance_among_cables and not workspace.space.is_discrete:
-            each = refine(workspace.space, nearness_of_each, thinned, _A_CLIMB_EACH)
-            starts = np.concatenate([thinned, [worst.place for worst in each]])
         (worst,) = refine_over_branches(workspace.space, nearness, starts, LIGHT)
         closest = clearance(worst.place[None])
         first, second = (int(number) for number in closest.pair[0])
@@ -134,7 +156,7 @@ def survey(
 
     return Interference(
         clearance_m=clearance_m,
-        samples=int(statics.is_solved.sum()),
+        samples=int((statics.is_solved & ~is_left_out(statics, workspace.hangs_below)).sum()),
         violating=int((cables.nearer(platform).distance_m < clearance_m).sum()),
         among_cables=nearest(clearance_among_cables, cables),
         to_platform=nearest(clearance_to_platform, platform),

@@ -35,7 +35,7 @@ from designer.selection.verify import verify
 from designer.statics.inverse import solve_sagging
 from designer.study import Study
 from designer.workspace.clearance import smallest_clearance
-from designer.workspace.demand import diameter_demand, massless_demand, rope_demand
+from designer.workspace.demand import diameter_demand, is_left_out, massless_demand, rope_demand
 from designer.workspace.interference import survey
 from designer.workspace.refine import Demand
 from designer.workspace.stiffness import displacement_demand, survey_stiffness
@@ -220,7 +220,9 @@ def check(study: Study, workspace: Workspace, count: int, rng: np.random.Generat
         near = survey(robot, workspace, cable, 0.1).worst
 
         def nearness(places: FloatArray) -> FloatArray:
-            distance = smallest_clearance(solve_sagging(robot, Poses.at(places), cable)).distance_m
+            statics = solve_sagging(robot, Poses.at(places), cable)
+            distance = smallest_clearance(statics).distance_m
+            distance[is_left_out(statics, policy)] = np.nan
             return -np.maximum(np.nan_to_num(distance, nan=np.inf), _TOUCHING_M)
 
         told_near = -np.inf if near is None else -max(near.distance_m, _TOUCHING_M)

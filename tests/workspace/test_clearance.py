@@ -12,12 +12,16 @@ from scipy.spatial.transform import Rotation
 
 from designer.arrays import frozen_array
 from designer.model.cable import Cable
+from designer.model.load_case import STATIC, Loaded
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
+from designer.model.requirement import State
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
 from designer.model.workspace import Workspace
 from designer.physics import catenary
+from designer.selection.criteria import criteria_of
+from designer.selection.requirements import CaseLoads, evaluate
 from designer.statics.fixed_length import cables_of_length
 from designer.statics.inverse import Statics, solve_sagging
 from designer.workspace.clearance import (
@@ -309,17 +313,43 @@ def test_survey_of_a_point_mass_has_nothing_to_compare(fast_robot, steel) -> Non
     assert found.samples == 1
 
 
+CARRYING = replace(
+    COGIRO, platform=replace(COGIRO.platform, wrench_N=frozen_array([0.0, 0, -2000, 0, 0, 0]))
+)
+
+
 @pytest.mark.slow
 def test_cables_that_cross_in_a_small_part_of_the_space_are_found() -> None:
     """Fewer than one in a hundred poses have cables 3 and 8 nearer than any others ever come."""
-    region = Prism.box((-4.55, -0.74), (-1.32, 1.58), (0.62, 1.24))
     half_rad = np.array([0.0126, 0.0323, 0.0526])
-    workspace = Workspace(
-        region, samples=1000, seed=893, orientations=Orientations.within(-half_rad, half_rad)
-    )
-    payload = replace(COGIRO.platform, wrench_N=frozen_array([0.0, 0, -2000, 0, 0, 0]))
+    turned = Orientations.within(-half_rad, half_rad)
+    region = Prism.box((-4.55, -0.74), (-1.32, 1.58), (0.62, 1.24))
+    workspace = Workspace(region, seed=893, orientations=turned, clearance_m=0.1)
     cable = Cable(0.00283, 0.0333, 394600.0, 1246.0)
-    found = survey(replace(COGIRO, platform=payload), workspace, cable, 0.1).among_cables
+    found = survey(CARRYING, workspace, cable, 0.1).among_cables
     assert found is not None
     assert found.pair == (2, 7)
     assert found.distance_m < 1e-6
+    loads = CaseLoads(workspace, (Loaded(STATIC, (CARRYING, cable), CARRYING, cable),))
+    asked = [c for c in criteria_of(CARRYING, workspace, None) if c.id == "clearance"]
+    (evaluation,) = evaluate([loads], asked)
+    assert evaluation.requirement.demand == 0.1
+    assert evaluation.requirement.state is State.FAILS
+
+
+@pytest.mark.slow
+def test_survey_leaves_out_what_the_study_leaves_out() -> None:
+    half_rad = np.array([0.0557, 0.0, 0.0051])
+    turned = Orientations.within(-half_rad, half_rad)
+    region = Prism.box((-3.42, -1.35), (-0.38, 3.27), (1.1, 2.29))
+    cable = Cable(0.0028, 0.0326, 386000.0, 1219.0)
+    below, without = (
+        survey(CARRYING, Workspace(region, orientations=turned, hangs_below=policy), cable, 0.1)
+        for policy in ("include", "exclude")
+    )
+    assert below.among_cables is not None
+    assert without.among_cables is not None
+    assert below.among_cables.distance_m < 1e-6  # a cable that hangs below crosses another
+    assert without.among_cables.distance_m > 0.2
+    at = Poses.at(without.among_cables.place)
+    assert not solve_sagging(CARRYING, at, cable).hangs_below
