@@ -26,7 +26,7 @@ from designer.workspace.refine import LIGHT, refine, refine_over_branches
 MOST_SAMPLES = 1000
 """Poses that are looked at before the search between them."""
 _A_CLIMB_EACH = replace(LIGHT, starts=1, finalists=1, revisited=0, tolerance=1e-2, rounds=0)
-"""For each pair of cables: where some cross may be so small a part that no start lies near it."""
+"""For each pair of cables: some cross in so small a part of the space that no sample shows it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
