@@ -12,7 +12,7 @@ from designer.documents.plain import Json, csv_text, plain, record
 from designer.model.load_case import Loaded
 from designer.model.space import named_place
 from designer.progress import Advance
-from designer.selection.criteria import Criterion
+from designer.selection.criteria import Criterion, starts_of_each
 from designer.selection.requirements import CaseLoads, Evaluation, equilibria, evaluate
 from designer.statics.inverse import Statics
 from designer.statics.reactions import platform_branch_N, reaction_N, winch_branch_N
@@ -105,6 +105,7 @@ def _criteria(loads: Sequence[CaseLoads]) -> list[Criterion]:
             limits=(np.inf,),
             kind="at_most",
             at_rest_after_loss=True,
+            starts=starts_of_each,
         )
 
     return [criterion(k, extreme) for k in range(1, n_cables + 1) for extreme in EXTREMES]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -22,6 +22,7 @@ from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Selection
 from designer.workspace.clearance import names_of, smallest_clearance
 from designer.workspace.interference import where_pairs_are_near
+from designer.workspace.straight import where_each_pulls_most
 
 ROUNDING = 1e-9
 """Relative: how exactly the solver keeps a limit that it chooses the internal forces by."""
@@ -55,8 +56,8 @@ class Criterion:
         Returns what the quantity is a share of, of each cable (n_cables,) [unit]; None where it is
         in that unit itself.
     starts : callable or None
-        Returns where to search from beside samples (n, n_coordinates), of the loads, the workspace
-        and those samples.
+        Returns where to search from beside samples (n, n_coordinates), of all directions of the
+        loads, the workspace and those samples.
     why_open : callable or None
         Returns why it is not known to fail where it does not hold there; empty where it fails.
     """
@@ -73,7 +74,7 @@ class Criterion:
     at_rest_after_loss: bool = False
     detail: Callable[[Loaded, Statics], str] | None = None
     capacity: Callable[[Statics], FloatArray] | None = None
-    starts: Callable[[Loaded, Workspace, FloatArray], FloatArray] | None = None
+    starts: Callable[[Sequence[Loaded], Workspace, FloatArray], FloatArray] | None = None
     why_open: Callable[[Statics], str] = lambda _: ""
 
     def severity(self, quantity: FloatArray) -> FloatArray:
@@ -168,6 +169,7 @@ def _of_winches(winches: Winches) -> Iterator[Criterion]:
             kind="at_most",
             at_rest_after_loss=True,  # brakes have to hold it as well
             capacity=_winch_capacity_N,
+            starts=starts_of_each,
             why_open=_why_other_tensions_may_do,
         )
     if winches.motor_torque_Nm is not None:
@@ -182,6 +184,14 @@ def _of_winches(winches: Winches) -> Iterator[Criterion]:
             limits=(winches.motor_torque_Nm,),
             kind="at_most",
         )
+
+
+def starts_of_each(
+    directions: Sequence[Loaded], workspace: Workspace, places: FloatArray
+) -> FloatArray:
+    """Return where to search for what each cable meets; see `where_each_pulls_most`."""
+    robots = [loaded.robot for loaded in directions]
+    return where_each_pulls_most(robots, workspace.space, places)
 
 
 def _winch_capacity_N(statics: Statics) -> FloatArray:
@@ -246,8 +256,8 @@ def _of_workspace(workspace: Workspace) -> Iterator[Criterion]:
             detail=lambda _, statics: " and ".join(
                 names_of(tuple(smallest_clearance(statics).pair[0]))
             ),
-            starts=lambda loaded, workspace, places: where_pairs_are_near(
-                loaded.robot, workspace, loaded.cable, places
+            starts=lambda directions, workspace, places: where_pairs_are_near(
+                directions[0].robot, workspace, directions[0].cable, places
             ),
         )
 

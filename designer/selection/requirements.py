@@ -138,6 +138,10 @@ def _evaluate_case(
     places = np.concatenate(
         [space.landmarks(), workspace.thinned(max(samples // count, FEWEST_SAMPLES))]
     )
+    if not keeps:  # there, as many more equilibria would take far too long
+        beside = dict.fromkeys(criterion.starts for criterion in of_case if criterion.starts)
+        known = [starts(loads.directions, workspace, places) for starts in beside]
+        places = np.concatenate([places, *known])
     severities = np.stack(
         [_severity(loaded, workspace, of_case, places).max(axis=0) for loaded in loads.directions]
     )
@@ -146,10 +150,7 @@ def _evaluate_case(
         loaded = loads.directions[number]
         columns = [of_case[k] for k in np.flatnonzero(worst == number)]
         demand = partial(_severity, loaded, workspace, columns)
-        # Where lengths are kept, as many more equilibria would take far too long.
-        known = [c.starts(loaded, workspace, places) for c in columns if c.starts and not keeps]
-        starts, effort = np.concatenate([places, *known]), LIGHT if keeps else _OF_MANY
-        extremes = refine_over_branches(space, demand, starts, effort)
+        extremes = refine_over_branches(space, demand, places, LIGHT if keeps else _OF_MANY)
         for criterion, extreme in zip(columns, extremes, strict=True):
             if np.isneginf(extreme.demand):  # no pose of the case counts
                 continue

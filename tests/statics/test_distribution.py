@@ -16,7 +16,7 @@ from designer.arrays import frozen_array
 from designer.kernel.batch import solve_massless_batch
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
-from designer.statics.distribution import distribute_evenly
+from designer.statics.distribution import distribute_evenly, tension_over_least
 from designer.statics.geometry import cable_geometry, load_wrench_N, upright_situation
 from designer.statics.inverse import solve_massless
 
@@ -77,6 +77,32 @@ def test_smallest_largest_tension_is_that_of_linprog(case) -> None:
     assert set(found.verdict[~held]) <= {Verdict.OUTSIDE_HULL}
     assert np.array_equal(largest_N <= high, held)
     assert largest_N[held] == pytest.approx(expected[held], rel=1e-9)
+
+
+def test_a_cable_at_its_least_tension_tells_what_more_of_it_would_cost() -> None:
+    robot, poses = replace(COGIRO, tension_min_N=100.0), anywhere(40)
+    over = tension_over_least(robot, poses)
+    tension_N = distribute_evenly(robot, poses)
+    above = over > 0.0
+    assert np.array_equal(np.isnan(over), np.isnan(tension_N))
+    assert 0.1 < above.mean() < 0.8
+    assert over[above] == pytest.approx((tension_N - 100.0)[above], rel=1e-9)
+    load, matrices = load_wrench_N(robot, poses), unit_wrenches(robot, poses)
+    for pose, cable in np.argwhere(over < -1e-6)[::7]:
+        more_N = 0.01
+        before, after = (
+            linprog(
+                np.append(np.zeros(robot.n_cables), 1.0),
+                A_ub=np.column_stack([np.eye(robot.n_cables), -np.ones(robot.n_cables)]),
+                b_ub=np.zeros(robot.n_cables),
+                A_eq=np.column_stack([matrices[pose], np.zeros(6)]),
+                b_eq=-load[pose],
+                bounds=[(100.0 + extra_N * (k == cable), None) for k in range(robot.n_cables)]
+                + [(0.0, None)],
+            ).fun
+            for extra_N in (0.0, more_N)
+        )
+        assert (after - before) / more_N == pytest.approx(-over[pose, cable], rel=1e-3, abs=1e-5)
 
 
 @pytest.mark.parametrize("objective", ["smallest_largest", "least_squares", "centred"])

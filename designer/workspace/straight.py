@@ -1,0 +1,40 @@
+"""Where straight cables pull most: starts for searches of what each sagging cable meets."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray
+from designer.model.robot import Poses, Robot
+from designer.model.space import Space
+from designer.statics.distribution import tension_over_least
+from designer.workspace.refine import LIGHT, refine_each
+
+_A_CLIMB_EACH = replace(
+    LIGHT, inside=512, starts=2, finalists=1, revisited=0, tolerance=1e-2, rounds=0
+)
+
+
+def where_each_pulls_most(robots: Sequence[Robot], space: Space, places: FloatArray) -> FloatArray:
+    """Return where each straight cable pulls most (n, n_coordinates), by a short climb from places.
+
+    Of one robot under one or several loads. Some cables of redundant robots have their least
+    tension in almost every pose, and nothing there leads a search to the few in which they carry.
+    With straight cables something does: how far each is from it. None for other robots, nor in a
+    space in which every place is tried.
+    """
+    if space.is_discrete or not robots[0].is_redundant:
+        return np.empty((0, space.n_coordinates))
+
+    def pull(places: FloatArray, load: IntArray) -> FloatArray:
+        loads, first = np.unique(load, return_index=True)
+        parts = zip(loads, np.split(places, first[1:]), strict=True)
+        over = [tension_over_least(robots[k], Poses.at(part)) for k, part in parts]
+        return np.nan_to_num(np.concatenate(over), nan=-np.inf)
+
+    worsts = refine_each(space, pull, [places] * len(robots), _A_CLIMB_EACH)
+    ends = np.array([worst.place for of_load in worsts for worst in of_load])
+    return np.asarray(ends[np.isfinite(ends).all(axis=1)])
