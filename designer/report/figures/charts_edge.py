@@ -42,9 +42,15 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
         if np.isfinite(value) and value <= top:
             axes.plot(at, value, **canvas.RING, markersize=6, zorder=5)
             text = f"{focus.label}, {canvas.significant(value, 3)} mm"
-            offset, ha = ((8, 6), "left") if at > 0.6 * start else ((-16, 6), "right")
-            style = {"ha": ha, "va": "bottom", "fontweight": "bold"}
-            canvas.note(axes, text, (at, value), offset, path_effects=canvas.halo(), **style)
+            # It is half as long as the axis; right of the middle, it stands below the rising curve.
+            is_left, is_below = at > 0.48 * start, 0.48 * start < at < 0.75 * start
+            offset = (8 if is_left else -16, -6 if is_below else 6)
+            style: Style = {
+                "ha": "left" if is_left else "right",
+                "va": "top" if is_below else "bottom",
+            }
+            style |= {"fontweight": "bold", "path_effects": canvas.halo()}
+            canvas.note(axes, text, (at, value), offset, **style)
         canvas.grid_lines(axes)
         height = canvas.significant(focus.position_m[2], 3)
         axes.set_title(f"needed diameter [mm] at z = {height} m", loc="left")

@@ -284,7 +284,7 @@ def _frame(points: FloatArray, corners: FloatArray) -> tuple[FloatArray, FloatAr
     shows_corners = bool(np.ptp(flat, axis=0).max() > _ZOOM * wide or len(flat) == 1)
     shown_m = everything if shows_corners else flat
     low, high = shown_m.min(axis=0), shown_m.max(axis=0)
-    half = 0.5 * (high - low) + 0.12 * max((high - low).max(), 1e-3)
+    half = 0.5 * (high - low) + 0.18 * max((high - low).max(), 1e-3)
     half = np.maximum(half, 0.35 * half.max())  # no slivers
     return 0.5 * (low + high), half, shows_corners
 
