@@ -159,16 +159,7 @@ def _set_rays(pose: Pose, cone: Cone) -> bool:
 
 
 @element
-def _product(rows: FloatArray, k: int, vector: FloatArray) -> float:
-    """Return the product of a row with a vector: to make an array of the row would take longer."""
-    total = 0.0
-    for q in range(vector.size):
-        total += rows[k, q] * vector[q]
-    return total
-
-
-@inner
-def _along(a: FloatArray, b: FloatArray) -> float:
+def _product(a: FloatArray, b: FloatArray) -> float:
     total = 0.0
     for q in range(a.size):
         total += a[q] * b[q]
@@ -178,7 +169,7 @@ def _along(a: FloatArray, b: FloatArray) -> float:
 @inner
 def normalise(vector: FloatArray) -> float:
     """Bring a vector to unit length, unless it has none; return what it had."""
-    size = math.sqrt(_along(vector, vector))
+    size = math.sqrt(_product(vector, vector))
     for q in range(vector.size):
         vector[q] /= size if size > 0.0 else 1.0
     return size
@@ -206,10 +197,10 @@ def _clear(vector: FloatArray, basis: FloatArray, count: int) -> float:
     """Take its share in the first rows of a basis from a vector, twice; return what is left."""
     for _ in range(2):
         for k in range(count):
-            share = _product(basis, k, vector)
+            share = _product(basis[k], vector)
             for q in range(vector.size):
                 vector[q] -= share * basis[k, q]
-    return math.sqrt(_along(vector, vector))
+    return math.sqrt(_product(vector, vector))
 
 
 @inner
@@ -229,7 +220,7 @@ def reach(cone: Cone, n_rays: int, count: int) -> int:
     for _ in range(_MOST_TURNS + n_rays):
         best, entering = _ENTERS, -1
         for j in range(n_rays):
-            gain = _product(rays, j, cone.rest)
+            gain = _product(rays[j], cone.rest)
             if gain > best and share[j] == 0.0:
                 best, entering = gain, j
         if entering < 0:
@@ -281,10 +272,8 @@ def _project(cone: Cone, count: int) -> bool:
         normalise(basis[k])
     for k in range(count):
         for j in range(k, count):
-            triangle[k, j] = 0.0
-            for q in range(cone.load.size):
-                triangle[k, j] += basis[k, q] * cone.rays[cone.used[j], q]
-        triangle[k, count] = _product(basis, k, cone.load)
+            triangle[k, j] = _product(basis[k], cone.rays[cone.used[j]])
+        triangle[k, count] = _product(basis[k], cone.load)
     for k in range(count - 1, -1, -1):
         total = triangle[k, count]
         for j in range(k + 1, count):
@@ -308,6 +297,6 @@ def _separation(cone: Cone, n_rays: int) -> float:
         return 0.0
     largest = _ROUNDING
     for j in range(n_rays):
-        largest = max(largest, _product(cone.rays, j, cone.rest))
-    separation = _along(cone.rest, cone.load)
+        largest = max(largest, _product(cone.rays[j], cone.rest))
+    separation = _product(cone.rest, cone.load)
     return separation if separation > max(_LEAST_SEPARATION, _BEYOND * largest) else 0.0

@@ -45,6 +45,7 @@ from designer.kernel.table import (
     T,
     V,
     condense,
+    condensed,
     load_of,
     place_cable,
     put_cable,
@@ -82,8 +83,12 @@ FORCE, SIZE, REACH = range(3)
 
 _BLOCK = 8
 """Cables that are bent at once."""
+# Rows of a block: of the table, given and found; then slope of the length, upward pull and its
+# slope, a step ahead.
 _GIVEN = (P, X2, D, KAPPA)
 _BENT = (L, L_0, L_P, V, V_P, T, T_P, V_PP, T_PP)
+_AHEAD = len(_GIVEN) + len(_BENT)
+_BLOCK_ROWS = _AHEAD + 3
 
 
 class Pose(NamedTuple):
@@ -102,7 +107,7 @@ class Pose(NamedTuple):
         [m].
     least_pulls : array (n_nodes, 2)
         See `designer.kernel.least_pull`.
-    block : array (16 rows of cables,)
+    block : array (rows of a block × its cables,)
         Some of the table's rows for a few cables; see `bend`.
     """
 
@@ -133,7 +138,7 @@ def new_pose(situation: Situation, figures: CableFigures) -> Pose:
     """Return the arrays of a pose."""
     cables = np.zeros((_ROWS, situation.attachments.shape[0]))
     least_pulls = figures.least_pulls
-    block = np.zeros(16 * _BLOCK)
+    block = np.zeros(_BLOCK_ROWS * _BLOCK)
     return Pose(cables, situation.rows, np.zeros(6), np.zeros(6), np.ones(3), least_pulls, block)
 
 
@@ -269,7 +274,7 @@ def bend(pose: Pose) -> None:
                 p, length_p, v, v_p = c[P, i], c[L_P, i], c[V, i], c[V_P, i]
                 lowest = _lowest_tension(c, i, p, c[L, i] + c[L_0, i], length_p, v, v_p)
                 c[LOWEST, i], c[LOWEST_P, i] = lowest
-                step, at = _ALONG * p, (len(_GIVEN) + len(_BENT)) * _BLOCK + j
+                step, at = _ALONG * p, _AHEAD * _BLOCK + j
                 length_p, v, v_p = block[at], block[at + _BLOCK], block[at + 2 * _BLOCK]
                 length = c[L, i] + step * c[L_P, i]
                 _, slope = _lowest_tension(c, i, p + step, length, length_p, v, v_p)
@@ -278,33 +283,20 @@ def bend(pose: Pose) -> None:
 
 @inner
 def _bend_block(block: FloatArray) -> None:
-    """Fill the rows `_BENT` of a block, then length and lift a step ahead with their slopes.
+    """Fill the rows `_BENT` of a block, then those from `_AHEAD`.
 
     All in one array, at distances that the compiler knows, so that it vectorises.
     """
     for j in range(_BLOCK):
         p, X2, D, kappa = block[j], block[_BLOCK + j], block[2 * _BLOCK + j], block[3 * _BLOCK + j]
         length = _closing_length(p, X2, D, kappa)
-        F, F_p, F_l, v, v_p, v_l, t, t_p, t_l = unit_cable(p, length, X2, D, kappa)
-        l_0, l_p = -F / F_l, -F_p / F_l
-        lift_p, top_p = v_p + v_l * l_p, t_p + t_l * l_p
+        l_0, l_p, v, v_p, t, t_p, _ = condensed(p, length, X2, D, kappa)
         step = _ALONG * p
-        _, G_p, G_l, u, u_p, u_l, _, r_p, r_l = unit_cable(
-            p + step, length + step * l_p, X2, D, kappa
-        )
-        ahead_p = -G_p / G_l
-        block[4 * _BLOCK + j] = length
-        block[5 * _BLOCK + j] = l_0
-        block[6 * _BLOCK + j] = l_p
-        block[7 * _BLOCK + j] = v + v_l * l_0
-        block[8 * _BLOCK + j] = lift_p
-        block[9 * _BLOCK + j] = t + t_l * l_0
-        block[10 * _BLOCK + j] = top_p
-        block[11 * _BLOCK + j] = (u_p + u_l * ahead_p - lift_p) / step
-        block[12 * _BLOCK + j] = (r_p + r_l * ahead_p - top_p) / step
-        block[13 * _BLOCK + j] = ahead_p
-        block[14 * _BLOCK + j] = u
-        block[15 * _BLOCK + j] = u_p + u_l * ahead_p
+        _, m_p, _, u_p, _, s_p, u = condensed(p + step, length + step * l_p, X2, D, kappa)
+        v_pp, t_pp = (u_p - v_p) / step, (s_p - t_p) / step
+        filled = (length, l_0, l_p, v, v_p, t, t_p, v_pp, t_pp, m_p, u, u_p)
+        for k in range(len(filled)):
+            block[(len(_GIVEN) + k) * _BLOCK + j] = filled[k]
 
 
 @element

@@ -102,14 +102,22 @@ def straighten(table: FloatArray, j: int, carried: float) -> None:
 @element
 def condense(table: FloatArray, j: int) -> None:
     """Condense a cable's length: pull and top tension as linear functions of the step in p."""
-    F, F_p, F_l, v, v_p, v_l, t, t_p, t_l = unit_cable(
+    l_0, l_p, v, v_p, t, t_p, _ = condensed(
         table[P, j], table[L, j], table[X2, j], table[D, j], table[KAPPA, j]
     )
-    l0 = -F / F_l
-    lp = -F_p / F_l
-    table[V, j] = v + v_l * l0
-    table[V_P, j] = v_p + v_l * lp
-    table[T, j] = t + t_l * l0
-    table[T_P, j] = t_p + t_l * lp
-    table[L_0, j] = l0
-    table[L_P, j] = lp
+    table[L_0, j], table[L_P, j] = l_0, l_p
+    table[V, j], table[V_P, j] = v, v_p
+    table[T, j], table[T_P, j] = t, t_p
+
+
+@element
+def condensed(
+    p: float, length: float, X2: float, D: float, kappa: float
+) -> tuple[float, float, float, float, float, float, float]:
+    """Return the change of length that closes a cable, upward pull and top tension after it.
+
+    Each with its slope in the pull along the closure; and the upward pull before the change.
+    """
+    F, F_p, F_l, v, v_p, v_l, t, t_p, t_l = unit_cable(p, length, X2, D, kappa)
+    l_0, l_p = -F / F_l, -F_p / F_l
+    return l_0, l_p, v + v_l * l_0, v_p + v_l * l_p, t + t_l * l_0, t_p + t_l * l_p, v
