@@ -17,7 +17,7 @@ from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.rest import resting_places
 from designer.statics.shape import exit_angle_rad, sag_m, stretch_m
-from designer.statics.stiffness import is_stable, largest_displacement_m_per_N, platform_stiffness
+from designer.statics.stiffness import largest_displacement_m_per_N
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,8 +210,8 @@ def _stability(
     if not statics.is_solved or cable is None:
         return None, "", np.nan
     softness = float(largest_displacement_m_per_N(statics))
-    stays = bool(is_stable(question.robot, platform_stiffness(statics)))
-    stiffness = 1.0 / softness if np.isfinite(softness) else 0.0
+    stays = bool(np.isfinite(softness))  # it is NaN where the balance is not stable
+    stiffness = 1.0 / softness if stays else 0.0
     if settled:
         rest = resting_places(question.robot, question.pose, cable, statics.length_m)
         return rest.is_stable, rest.sentence, stiffness

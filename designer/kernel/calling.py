@@ -62,6 +62,10 @@ class Situation(NamedTuple):
                 changed[name] = plain(values[at])
         return self._replace(**changed)
 
+    def starting_at(self, points_m: FloatArray) -> Situation:
+        """Return the situation with cables that begin at points (…, n_cables, 3) [m]."""
+        return self._replace(exit_points=plain(points_m.reshape(-1, *points_m.shape[-2:])))
+
 
 class CableFigures(NamedTuple):
     """The cables of the poses.

@@ -11,7 +11,7 @@ from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material, MaterialsB
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.statics.inverse import Statics, statics_of
-from designer.statics.task import Task, solve_task
+from designer.statics.task import Task, situation_at, solve_task
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,7 +62,7 @@ def size_poses(
     it is not to ``seeks_better`` than what was found first; or where nothing was found at first,
     unless it ``is_quick``.
     """
-    task = _task(robot, material, None)
+    task = _task(robot, poses, material, None)
     solution, run = solve_task(robot, poses, task, seeks_better=seeks_better, is_quick=is_quick)
     heaviest = _densities(material).max(axis=-1)
     area = solution.weight_N_per_m / (STANDARD_GRAVITY_M_PER_S2 * heaviest)
@@ -99,16 +99,20 @@ def limit_ratio(robot: Robot, poses: Poses, material: Material) -> FloatArray:
 
     NaN where that limit was not solved.
     """
-    solution, _ = solve_task(robot, poses, _task(robot, material, 0.0))
+    solution, _ = solve_task(robot, poses, _task(robot, poses, material, 0.0))
     return solution.load_factor.reshape(poses.shape)
 
 
 def _task(
-    robot: Robot, material: Material | MaterialsByPose, inverse_m_per_N: float | None
+    robot: Robot,
+    poses: Poses,
+    material: Material | MaterialsByPose,
+    inverse_m_per_N: float | None,
 ) -> Task:
     density = _densities(material)
     heaviest = density.max(axis=-1, keepdims=True)
     return Task(
+        situation_at(robot, poses),
         np.reshape(material.elastic_compliance_per_m, density.shape),
         np.reshape(material.strength_length_m, density.shape),
         inverse_m_per_N,

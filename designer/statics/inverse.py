@@ -22,7 +22,7 @@ from designer.statics.geometry import (
     upright_poses,
 )
 from designer.statics.pulleys import PulleyRun, straight_run
-from designer.statics.task import Task, solve_task
+from designer.statics.task import Task, situation_at, solve_task
 
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution
@@ -285,10 +285,10 @@ def solve_sagging(
         raise ValueError(f"{weight.shape[-1]} cables do not fit {robot.n_cables} exit points")
     heaviest = weight.max(axis=-1, keepdims=True)
     task = Task(
+        situation_at(robot, poses, force_N),
         kappa_per_m=weight / cable.axial_stiffness_N,
         strength_m=cable.allowable_tension_N / weight,
         inverse_weight_m_per_N=1.0 / heaviest[..., 0],
-        force_N=force_N,
         relative_weights=weight / heaviest,
         sag_max=robot.sag_max,
     )

@@ -50,54 +50,53 @@ class Task:
 
     Parameters
     ----------
+    situation : Situation
+        Poses (n_poses,) and load, the cables beginning at the exit points; see `situation_at`.
     kappa_per_m, strength_m : float or array (n_cables,) or (n_poses, 1 or n_cables)
         Weight over axial stiffness [1/m], allowable tension over weight [m]; one for all cables, or
         each its own, in all poses or each.
     inverse_weight_m_per_N : float, array (n_poses,) or None
         1 / w; None asks for the lightest cable.
-    force_N : array (..., 3) or None
-        Force on the platform beside its weight, base frame [N].
     relative_weights : float or array (n_cables,) or (n_poses, 1 or n_cables)
         Weight of the cables relative to w.
     sag_max : float or None
         Largest sag over chord, of more cables than degrees of freedom.
-    situation : Situation or None
-        Of poses (n_poses,) without pulleys, where the cables begin at the same points throughout.
     """
 
+    situation: Situation
     kappa_per_m: float | FloatArray
     strength_m: float | FloatArray
     inverse_weight_m_per_N: float | FloatArray | None
-    force_N: FloatArray | None = None
     relative_weights: float | FloatArray = 1.0
     sag_max: float | None = None
-    situation: Situation | None = None
 
     def part(self, at: IntArray) -> Task:
         """Return the task for some of poses (n_poses,)."""
-        changed: dict[str, Any] = {}
-        for name in ("kappa_per_m", "strength_m", "relative_weights", "force_N"):
+        changed: dict[str, Any] = {"situation": self.situation.part(at)}
+        for name in ("kappa_per_m", "strength_m", "relative_weights"):
             values = getattr(self, name)
             if np.ndim(values) == 2:
                 changed[name] = values[at]
         inverse = self.inverse_weight_m_per_N
         if isinstance(inverse, np.ndarray) and inverse.ndim == 1:
             changed["inverse_weight_m_per_N"] = inverse[at]
-        if self.situation is not None:
-            changed["situation"] = self.situation.part(at)
-        return replace(self, **changed) if changed else self
+        return replace(self, **changed)
 
-    def situation_at(self, robot: Robot, poses: Poses, exit_points_m: FloatArray) -> Situation:
-        """Return what kernels are told of the poses, with the cables beginning at these points."""
-        if self.situation is not None:
-            return self.situation
-        return upright_situation(robot, poses, exit_points_m, self.force_N)
+
+def situation_at(robot: Robot, poses: Poses, force_N: FloatArray | None = None) -> Situation:
+    """Return what kernels are told of poses (...), flattened, without pulleys.
+
+    And of a force (..., 3) on the platform beside its weight, base frame [N].
+    """
+    if force_N is not None:
+        force_N = np.broadcast_to(force_N, poses.position_m.shape).reshape(-1, 3)
+    return upright_situation(robot, poses.flat, upright_exit_points_m(robot), force_N)
 
 
 def solve_task(
     robot: Robot, poses: Poses, task: Task, *, seeks_better: bool = True, is_quick: bool = False
 ) -> tuple[Solution, PulleyRun]:
-    """Solve poses (...), flattened to one axis.
+    """Solve poses (...), flattened to one axis, of which the task tells `situation_at`.
 
     Other branches are tried where nothing is found, unless it ``is_quick``, and, if it
     ``seeks_better``, where one may be better than what is. Where none keeps the largest sag, the
@@ -105,19 +104,12 @@ def solve_task(
     """
     checkpoint()
     flat = poses.flat
-    count = len(flat.position_m)
-    force = None if task.force_N is None else np.broadcast_to(task.force_N, poses.position_m.shape)
-    task = replace(task, force_N=None if force is None else force.reshape(count, 3), situation=None)
-    if robot.pulley_radius_m == 0.0:
-        points = upright_exit_points_m(robot)
-        task = replace(task, situation=task.situation_at(robot, flat, points))
-
     solution, run = _solve_over_pulleys(
         robot, flat, task, is_thorough=False, rates_branches=seeks_better
     )
     _judge_unsolved(robot, flat, solution, task)
     limits_sag = robot.is_redundant and task.sag_max is not None
-    hangs = np.zeros(count, dtype=np.bool_)
+    hangs = np.zeros(len(flat.position_m), dtype=np.bool_)
     if limits_sag and not seeks_better:
         hangs = _let_hang(robot, flat, solution, run, task, seeks_better)
     if not is_quick:
@@ -149,7 +141,7 @@ def _solve_over_pulleys(
     def solve(run: PulleyRun) -> tuple[Solution, FloatArray, float]:
         solution = solve_batch(
             robot,
-            task.situation_at(robot, flat, run.exit_points_m),
+            task.situation.starting_at(run.exit_points_m),
             task.kappa_per_m * ones,
             task.relative_weights * ones,
             task.strength_m * ones,
@@ -283,7 +275,7 @@ def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -
         return
     poses = flat.part(unsolved)
     points = straight_run(robot, poses).exit_points_m
-    situation = task.part(unsolved).situation_at(robot, poses, points)
+    situation = task.situation.part(unsolved).starting_at(points)
     is_near, least_N = np.zeros(len(unsolved), dtype=np.bool_), robot.tension_min_N
     if robot.pulley_radius_m > 0.0:  # the cone bounds a cable only beyond its pulley
         level = level_geometry(robot, poses)

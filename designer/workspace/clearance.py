@@ -90,13 +90,14 @@ def distances_among_cables_m(statics: Statics) -> FloatArray:
 
     Of `cable_pairs`, in poses (n_poses,); NaN where a pose is not solved.
     """
-    n, pairs = statics.robot.n_cables, np.array(cable_pairs(statics.robot)).reshape(-1, 2)
+    pairs = cable_pairs(statics.robot)
     distance = np.full((len(statics.verdict), len(pairs)), np.nan)
     for rows in _solved_chunks(statics):
         lines = _whole(Curves.of(statics.part(rows)), _ROUGH)
-        first, second = ((n * np.arange(len(rows))[:, None] + pair).ravel() for pair in pairs.T)
+        row, kind = np.indices((len(rows), len(pairs))).reshape(2, -1)
+        first, second = row * statics.robot.n_cables + pairs[kind].T
         between, _, _ = _pieces(lines.points_m[first], lines.points_m[second])
-        distance[rows] = between.reshape(-1, len(pairs))
+        distance[rows] = between.reshape(len(rows), len(pairs))
     return distance
 
 
@@ -132,18 +133,22 @@ def _in_chunks(
     return Clearance(*(all_of.reshape((*shape, *all_of.shape[1:])) for all_of in clearance.each()))
 
 
-def cable_pairs(robot: Robot) -> list[tuple[int, int]]:
-    """Return the pairs of cables that share neither an exit point nor an attachment."""
+def cable_pairs(robot: Robot) -> IntArray:
+    """Return the pairs of cables (n_pairs, 2) that share neither an exit point nor an attachment.
+
+    Cable i of pose k is curve k · n_cables + i of `Curves`.
+    """
     size = float(np.linalg.norm(np.ptp(robot.exit_points_m, axis=0)))
 
     def apart(points: FloatArray, i: int, j: int) -> bool:
         return bool(np.linalg.norm(points[i] - points[j]) > _COINCIDENT * size)
 
-    return [
+    pairs = [
         (i, j)
         for i, j in combinations(range(robot.n_cables), 2)
         if apart(robot.exit_points_m, i, j) and apart(robot.attachments_m, i, j)
     ]
+    return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
 
 def cable_margin_m(robot: Robot, hull: Hull) -> FloatArray:
@@ -157,13 +162,12 @@ def cable_margin_m(robot: Robot, hull: Hull) -> FloatArray:
 
 
 def _among_cables(statics: Statics, curves: Curves) -> tuple[IntArray, Clearance] | None:
-    robot = statics.robot
-    pairs = np.array(cable_pairs(robot), dtype=np.int64).reshape(-1, 2)
+    robot, pairs = statics.robot, cable_pairs(statics.robot)
     if len(pairs) == 0:
         return None
     n, coarse = robot.n_cables, _whole(curves, _COARSE)
     row, kind = _candidates(coarse, n, pairs)
-    first, second = row * n + pairs[kind, 0], row * n + pairs[kind, 1]
+    first, second = row * n + pairs[kind].T
     pieces = [_pick(coarse, first), _pick(coarse, second)]
     distance, middle, at = _between(*pieces)
     error = coarse.sagitta_m[first].max(axis=-1) + coarse.sagitta_m[second].max(axis=-1)

@@ -112,7 +112,7 @@ def where_pairs_are_near(
         return -np.nan_to_num(distance, nan=np.inf)
 
     space = workspace.space
-    if space.is_discrete or not cable_pairs(robot):
+    if space.is_discrete or not len(cable_pairs(robot)):
         return np.empty((0, space.n_coordinates))
     ends = np.array([worst.place for worst in refine(space, nearness, places, _A_CLIMB_EACH)])
     return np.asarray(ends[np.isfinite(ends).all(axis=1)])
@@ -131,9 +131,10 @@ def survey(
 
     cables = counted(clearance_among_cables, statics)
     platform = counted(clearance_to_platform, statics)
-    starts = np.concatenate([thinned, where_pairs_are_near(robot, workspace, cable, thinned)])
 
-    def nearest(among: Callable[[Statics], Clearance], sampled: Clearance) -> Nearest | None:
+    def nearest(
+        among: Callable[[Statics], Clearance], sampled: Clearance, starts: FloatArray
+    ) -> Nearest | None:
         def clearance(places: FloatArray, seeks_better: bool = True) -> Clearance:
             poses = Poses.at(places)
             return counted(among, solve_sagging(robot, poses, cable, seeks_better=seeks_better))
@@ -154,10 +155,11 @@ def survey(
             point_m=closest.place_m[0],
         )
 
+    near = np.concatenate([thinned, where_pairs_are_near(robot, workspace, cable, thinned)])
     return Interference(
         clearance_m=clearance_m,
         samples=int((statics.is_solved & ~is_left_out(statics, workspace.hangs_below)).sum()),
         violating=int((cables.nearer(platform).distance_m < clearance_m).sum()),
-        among_cables=nearest(clearance_among_cables, cables),
-        to_platform=nearest(clearance_to_platform, platform),
+        among_cables=nearest(clearance_among_cables, cables, near),
+        to_platform=nearest(clearance_to_platform, platform, thinned),
     )

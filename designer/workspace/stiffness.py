@@ -12,9 +12,9 @@ from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.space import named_position
 from designer.model.workspace import Workspace
-from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.inverse import solve_sagging
 from designer.statics.modes import knows_inertia, platform_frequencies_Hz
-from designer.statics.stiffness import largest_displacement_m_per_N
+from designer.statics.stiffness import largest_displacement_m_per_N, upright_stiffness
 from designer.workspace.demand import is_left_out
 from designer.workspace.refine import LIGHT, refine_over_branches
 
@@ -64,7 +64,7 @@ def survey_stiffness(
 
     The search starts from `MOST_SAMPLES` of the workspace's samples.
     """
-    displacement = partial(_motion_demand, robot, workspace, cable)
+    displacement = partial(displacement_demand, robot, workspace, cable, with_frequency=True)
     thinned = workspace.thinned(MOST_SAMPLES)
     demand = displacement(thinned)
     counts = ~np.isneginf(demand[:, 0])
@@ -114,36 +114,22 @@ def displacement_demand(
     places: FloatArray,
     *,
     seeks_better: bool = True,
+    with_frequency: bool = False,
 ) -> FloatArray:
     """Displacement under a unit force, and negated, (n, 2) [m/N].
 
-    Inf and -inf where the platform would not stay, both -inf where the pose does not count.
+    Inf and -inf where the platform would not stay, all -inf where the pose does not count. With the
+    lowest frequency, negated, (n, 3) where that is asked for and the inertia known [Hz].
     """
     statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
-    return _displacement(statics, workspace)
-
-
-def _motion_demand(
-    robot: Robot,
-    workspace: Workspace,
-    cable: Cable | Cables,
-    places: FloatArray,
-    *,
-    seeks_better: bool = True,
-) -> FloatArray:
-    """Return the same and, where the inertia is known, the lowest frequency, negated (n, 3)."""
-    statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
-    demand, body = _displacement(statics, workspace), robot.platform
-    if not knows_inertia(robot, body):
-        return demand
-    frequencies = platform_frequencies_Hz(statics, body, cable.linear_density_kg_per_m)
-    slowest = np.where(np.isneginf(demand[:, 0]), -np.inf, -frequencies[:, 0])
-    return np.column_stack([demand, slowest])
-
-
-def _displacement(statics: Statics, workspace: Workspace) -> FloatArray:
     counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
-    displacement = largest_displacement_m_per_N(statics)
+    stiffness, body = upright_stiffness(statics), robot.platform
+    displacement = largest_displacement_m_per_N(statics, stiffness)
     stays = counts & np.isfinite(displacement)
     softest = np.where(stays, displacement, np.where(counts, np.inf, -np.inf))
-    return np.column_stack([softest, np.where(stays, -displacement, -np.inf)])
+    columns = [softest, np.where(stays, -displacement, -np.inf)]
+    if with_frequency and knows_inertia(robot, body):
+        density = cable.linear_density_kg_per_m
+        frequencies = platform_frequencies_Hz(statics, body, density, stiffness)
+        columns.append(np.where(counts, -frequencies[:, 0], -np.inf))
+    return np.column_stack(columns)

@@ -149,10 +149,11 @@ def test_the_bound_covers_a_coarse_polyline() -> None:
 
 
 def test_cables_that_share_an_end_are_not_compared(fast_robot, six_cable_robot) -> None:
-    assert cable_pairs(fast_robot) == []
-    assert (0, 1) not in cable_pairs(six_cable_robot)  # one exit point
-    assert (0, 3) not in cable_pairs(six_cable_robot)  # one attachment
-    assert (0, 2) in cable_pairs(six_cable_robot)
+    assert not len(cable_pairs(fast_robot))
+    pairs = cable_pairs(six_cable_robot).tolist()
+    assert [0, 1] not in pairs  # one exit point
+    assert [0, 3] not in pairs  # one attachment
+    assert [0, 2] in pairs
     statics = solve_sagging(fast_robot, Poses.at([[250.0, 200, -50]]), ROPE)
     assert np.isnan(smallest_clearance(statics).distance_m).all()
 
