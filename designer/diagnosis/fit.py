@@ -144,11 +144,13 @@ def fit(
     if not effects:
         loss = float(huber(problem.misfit(())[is_used]).sum())
         return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(is_used))
-    fresh = _to_start(effects, start, anew=anew)
+    known = {s.effect.key for s in start}
+    several = [e for e in effects if e.starts or e.starts_from]  # valleys to start in
+    fresh = [e for e in several if anew or e.key not in known]
     # Evaluations from anywhere, and from near the end.
     turns = 80 if thorough or not start or (anew and fresh) else 12
     valleys = _starts(problem, effects, start, fresh)
-    is_known = {effect.key for effect in fresh} <= {s.effect.key for s in start}
+    is_known = {effect.key for effect in fresh} <= known
     near = [starting_vector(effects, start, {})] if is_known or not valleys else []
     starts = [*valleys, *near]
     if anew or not start:  # the present values promise most, but may be in the wrong valley
@@ -159,13 +161,6 @@ def fit(
         ]
     fits = [_fit_from(problem, effects, is_used, v, turns, thorough=thorough) for v in starts]
     return min(fits, key=lambda candidate: candidate.loss)
-
-
-def _to_start(effects: Sequence[Effect], start: Sequence[Setting], *, anew: bool) -> list[Effect]:
-    """Return the effects with several valleys to start in: those not known, or all of them."""
-    keys = {s.effect.key for s in start}
-    several = [e for e in effects if e.starts or e.starts_from]
-    return [e for e in several if anew or e.key not in keys]
 
 
 def _starts(

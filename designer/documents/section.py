@@ -208,17 +208,13 @@ def schema_faults(error: ValidationError, document: Document, schema: AnySection
     """
     details = error.errors(include_url=False)[:MOST_FAULTS]
     unknown = [detail["loc"] for detail in details if detail["type"] in _UNKNOWN]
-    meant = [(loc, _nearest_field(loc, schema)) for loc in unknown]
+    meant = [(loc, nearest_name(str(loc[-1]), known_fields(schema, loc[:-1]))) for loc in unknown]
     misspelt = {(*loc[:-1], nearest) for loc, nearest in meant if nearest is not None}
     return [
         document.fault(_document_path(detail, document), *_words(detail, schema))
         for detail in details
         if detail["loc"] not in misspelt
     ]
-
-
-def _nearest_field(loc: tuple[Key, ...], schema: AnySection) -> str | None:
-    return nearest_name(str(loc[-1]), known_fields(schema, loc[:-1]))
 
 
 def _document_path(detail: ErrorDetails, document: Document) -> list[Key]:

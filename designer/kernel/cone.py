@@ -159,7 +159,8 @@ def _set_rays(pose: Pose, cone: Cone) -> bool:
 
 
 @element
-def _product(a: FloatArray, b: FloatArray) -> float:
+def product(a: FloatArray, b: FloatArray) -> float:
+    """Return the product of two vectors (n,)."""
     total = 0.0
     for q in range(a.size):
         total += a[q] * b[q]
@@ -169,7 +170,7 @@ def _product(a: FloatArray, b: FloatArray) -> float:
 @inner
 def normalise(vector: FloatArray) -> float:
     """Bring a vector to unit length, unless it has none; return what it had."""
-    size = math.sqrt(_product(vector, vector))
+    size = math.sqrt(product(vector, vector))
     for q in range(vector.size):
         vector[q] /= size if size > 0.0 else 1.0
     return size
@@ -197,10 +198,10 @@ def _clear(vector: FloatArray, basis: FloatArray, count: int) -> float:
     """Take its share in the first rows of a basis from a vector, twice; return what is left."""
     for _ in range(2):
         for k in range(count):
-            share = _product(basis[k], vector)
+            share = product(basis[k], vector)
             for q in range(vector.size):
                 vector[q] -= share * basis[k, q]
-    return math.sqrt(_product(vector, vector))
+    return math.sqrt(product(vector, vector))
 
 
 @inner
@@ -220,7 +221,7 @@ def reach(cone: Cone, n_rays: int, count: int) -> int:
     for _ in range(_MOST_TURNS + n_rays):
         best, entering = _ENTERS, -1
         for j in range(n_rays):
-            gain = _product(rays[j], cone.rest)
+            gain = product(rays[j], cone.rest)
             if gain > best and share[j] == 0.0:
                 best, entering = gain, j
         if entering < 0:
@@ -272,8 +273,8 @@ def _project(cone: Cone, count: int) -> bool:
         normalise(basis[k])
     for k in range(count):
         for j in range(k, count):
-            triangle[k, j] = _product(basis[k], cone.rays[cone.used[j]])
-        triangle[k, count] = _product(basis[k], cone.load)
+            triangle[k, j] = product(basis[k], cone.rays[cone.used[j]])
+        triangle[k, count] = product(basis[k], cone.load)
     for k in range(count - 1, -1, -1):
         total = triangle[k, count]
         for j in range(k + 1, count):
@@ -297,6 +298,6 @@ def _separation(cone: Cone, n_rays: int) -> float:
         return 0.0
     largest = _ROUNDING
     for j in range(n_rays):
-        largest = max(largest, _product(cone.rays[j], cone.rest))
-    separation = _product(cone.rest, cone.load)
+        largest = max(largest, product(cone.rays[j], cone.rest))
+    separation = product(cone.rest, cone.load)
     return separation if separation > max(_LEAST_SEPARATION, _BEYOND * largest) else 0.0

@@ -240,16 +240,16 @@ def _lowest_tension(
 @element
 def settled_length(c: FloatArray, i: int, p: float) -> float:
     """Return the length that closes the cable at this pull."""
-    return _closing_length(p, c[X2, i], c[D, i], c[KAPPA, i])
+    return closing_length(p, c[X2, i], c[D, i], c[KAPPA, i], 3)
 
 
 @element
-def _closing_length(p: float, X2: float, D: float, kappa: float) -> float:
-    """Start from the inextensible cable, and solve the closure by Newton."""
+def closing_length(p: float, X2: float, D: float, kappa: float, turns: int) -> float:
+    """Start from the inextensible cable, and solve the closure by so many turns of Newton."""
     theta = 0.5 / p
     straight = np.sqrt(D**2 + X2 * (1.0 + theta * theta * sag_series(theta * theta)))
     length = straight / (1.0 + kappa * p * straight)
-    for _ in range(3):
+    for _ in range(turns):
         F, _, F_l, _, _, _, _, _, _ = unit_cable(p, length, X2, D, kappa)
         length -= F / F_l
     return float(length)
@@ -289,7 +289,7 @@ def _bend_block(block: FloatArray) -> None:
     """
     for j in range(_BLOCK):
         p, X2, D, kappa = block[j], block[_BLOCK + j], block[2 * _BLOCK + j], block[3 * _BLOCK + j]
-        length = _closing_length(p, X2, D, kappa)
+        length = closing_length(p, X2, D, kappa, 3)
         l_0, l_p, v, v_p, t, t_p, _ = condensed(p, length, X2, D, kappa)
         step = _ALONG * p
         _, m_p, _, u_p, _, s_p, u = condensed(p + step, length + step * l_p, X2, D, kappa)
@@ -381,27 +381,26 @@ def _measure(pose: Pose, c: float) -> tuple[float, float, float, float]:
 
 @inner
 def store(
-    out: Answers, at: int, pose: Pose, c: float, gap: float, straight_c: float, sizing: bool
+    out: Answers, at: int, pose: Pose, ask: Ask, s: float, gap: float, straight_c: float
 ) -> int:
     """Write a pose's answer, NaN unless it is solved; return that, or not converged.
 
     Parameters
     ----------
-    c, gap : float
-        Inverse weight [m/N], and how far the state is from optimal.
+    s, gap : float
+        What is as large as can be, and how far the state is from optimal.
     straight_c : float
         Largest scaled inverse weight of straight cables; none if not above zero.
-    sizing : bool
-        Whether c was sought or given.
     """
     cables, scale = pose.cables, pose.scale
+    c = (ask.c_0 + s * ask.c_s) / (scale[SIZE] / scale[FORCE])
     closure, apart, error, overload = _measure(pose, c)
     heaviest, massless = abs(c) * scale[SIZE], 0.0
     for i in range(cables.shape[1]):
         heaviest = max(heaviest, cables[SHARE, i] * cables[T, i])
         massless = max(massless, cables[STRAIGHT, i])
     residual = apart + error / heaviest if gap <= OPTIMAL_WITHIN else np.inf
-    verdict = judge(residual, c, overload, sizing)
+    verdict = judge(residual, c, overload, ask.c_s > 0.0)
     w = write_pose(out, at, verdict, c, closure, error)
     for i in range(cables.shape[1]):
         write_cable(out, at, i, cables, i, w)

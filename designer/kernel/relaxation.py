@@ -27,11 +27,11 @@ import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.compiling import element, inner
-from designer.kernel.cone import Cone, new_cone, normalise, reach, restart
+from designer.kernel.cone import Cone, new_cone, normalise, product, reach, restart
 from designer.kernel.linear import copy
-from designer.kernel.pose import FORCE, Pose, along
-from designer.kernel.table import CHORD, KAPPA, LEVEL, LIFT, SHARE, STRENGTH, X2, D
-from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
+from designer.kernel.pose import FORCE, Pose, along, closing_length
+from designer.kernel.table import CHORD, KAPPA, LEVEL, LIFT, SHARE, STRENGTH, X2, D, condensed
+from designer.kernel.unit_cable import PULL_FLOOR
 
 _PIECES = 64
 _MARGIN = 1e-3
@@ -146,14 +146,10 @@ def _approach(pose: Pose, body: CableRanges, part: int, n_points: int) -> tuple[
     for turn in range(n_points, 1 + _MOST_TURNS):
         if _is_apart(pose, body, cut, turn):
             return turn, True
-        ahead = 0.0
-        for k in range(m + 1):
-            ahead += cone.rest[k] * cone.rays[turn, k]
+        ahead = product(cone.rest, cone.rays[turn])
         normalise(cone.rays[turn])
         in_use = reach(cone, turn + 1, in_use)
-        far = 0.0
-        for k in range(m + 1):
-            far += cone.rest[k] ** 2
+        far = product(cone.rest, cone.rest)
         if in_use < 0 or (turn > 1 and ahead < _STILL * far) or far < _NEAR**2:
             return turn + 1, False
         copy(cone.rest[:m], wrench)
@@ -280,14 +276,9 @@ def hanging(c: FloatArray, i: int, p: float) -> tuple[float, float, float]:
 
 @element
 def _hanging(p: float, X2: float, D: float, kappa: float) -> tuple[float, float, float]:
-    theta = 0.5 / p
-    straight = np.sqrt(D * D + X2 * (1.0 + theta * theta * sag_series(theta * theta)))
-    length = straight / (1.0 + kappa * p * straight)
-    F, _, F_l, _, _, _, _, _, _ = unit_cable(p, length, X2, D, kappa)
-    length -= F / F_l
-    F, F_p, F_l, v, v_p, v_l, t, _, t_l = unit_cable(p, length, X2, D, kappa)
-    rest = F / F_l
-    return v - v_l * rest, v_p - v_l * F_p / F_l, t - t_l * rest
+    length = closing_length(p, X2, D, kappa, 1)
+    _, _, lift, slope, tension, _, _ = condensed(p, length, X2, D, kappa)
+    return lift, slope, tension
 
 
 @inner
@@ -305,22 +296,22 @@ def pulls_borne(pose: Pose, i: int, halvings: int) -> tuple[float, float]:
         low *= _SHORTER
     if low <= PULL_FLOOR:
         return PULL_FLOOR, high
-    borne = low
-    for _ in range(halvings):
-        p = 0.5 * (borne + high)
-        if hanging(c, i, p)[2] > strength:
-            high = p
-        else:
-            borne = p
-    slack = borne
+    slack, high = _halve(c, i, low, high, halvings)
     while low > PULL_FLOOR and hanging(c, i, low)[2] <= strength:
         slack = low
         low *= _SHORTER
-    low = max(low, PULL_FLOOR)
+    return _halve(c, i, slack, max(low, PULL_FLOOR), halvings)[1], high
+
+
+@inner
+def _halve(
+    c: FloatArray, i: int, borne: float, beyond: float, halvings: int
+) -> tuple[float, float]:
+    """Bring a pull that the strength bears and one that it does not nearer to each other."""
     for _ in range(halvings):
-        p = 0.5 * (slack + low)
-        if hanging(c, i, p)[2] > strength:
-            low = p
+        p = 0.5 * (borne + beyond)
+        if hanging(c, i, p)[2] > c[STRENGTH, i]:
+            beyond = p
         else:
-            slack = p
-    return low, high
+            borne = p
+    return borne, beyond

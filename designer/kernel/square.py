@@ -116,8 +116,9 @@ def solve_range(
             _solve_block(cables, A, poses, rows, sizing, iterations, step, lightness)
             evaluate(cables)
             check(poses, cables, rows)
-            if not sizing:
-                _refuse_other_weights(poses)
+            for j in range(width):  # balanced with cables lighter still than those asked for
+                if not sizing and poses[C, j] != poses[GOAL, j]:
+                    poses[RESIDUAL, j] = np.inf
             _store(out, cables, poses, lane, sizing)
             for j in range(min(width, pending.size - first)):
                 # Negated, so that NaN counts as failed.
@@ -225,14 +226,6 @@ def check(poses: FloatArray, cables: FloatArray, rows: IntArray) -> None:
             poses[PULL, j] += abs(poses[LOAD + axis, j]) / poses[REACH, j]
         # Addition instead of a maximum, because it lets NaN through.
         poses[RESIDUAL, j] += force / poses[SCALE, j]
-
-
-@inner
-def _refuse_other_weights(poses: FloatArray) -> None:
-    """Leave unsolved what balances cables that are lighter still than those asked for."""
-    for j in range(poses.shape[1]):
-        if poses[C, j] != poses[GOAL, j]:
-            poses[RESIDUAL, j] = np.inf
 
 
 @element

@@ -19,7 +19,11 @@ def one_after_the_other(sessions: Sequence[Measured]) -> Measured:
     """
     counts = [each.n_rows for each in sessions]
     firsts = np.cumsum([0, *(each.row_numbers[-1] for each in sessions[:-1])]).tolist()
-    notes = [*_numbering(firsts), *_left_out(sessions)]
+    notes = [
+        f"row 1 of session {number} is counted as row {first + 1}"
+        for number, first in enumerate(firsts[1:], start=2)
+    ]
+    notes += _left_out(sessions)
     for number, each in enumerate(sessions, start=1):
         notes += [f"session {number}: {note}" for note in each.notes]
     shared = [k for k in sessions[0].covariates if all(k in each.covariates for each in sessions)]
@@ -47,11 +51,6 @@ def one_after_the_other(sessions: Sequence[Measured]) -> Measured:
         sha256=", ".join(each.sha256 for each in sessions),
         session=np.repeat(np.arange(1, len(sessions) + 1), counts),
     )
-
-
-def _numbering(firsts: Sequence[int]) -> Iterator[str]:
-    for number, first in enumerate(firsts[1:], start=2):
-        yield f"row 1 of session {number} is counted as row {first + 1}"
 
 
 def _left_out(sessions: Sequence[Measured]) -> Iterator[str]:

@@ -45,7 +45,7 @@ def position_m(
 
     Riehl et al., ICRA 2010, eqs. (3) and (4); all arguments broadcast.
     """
-    s, length, F_x, F_z, EA, w = _floats(
+    s, length, F_x, F_z, EA, w = floats(
         s_m, length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m
     )
     V_0 = F_z - w * length
@@ -97,7 +97,7 @@ def end_tensions_N(
     length_m: ArrayLike, force_x_N: ArrayLike, force_z_N: ArrayLike, weight_N_per_m: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
     """Return the tension at the exit point, eq. (10), and at the platform (...) [N]."""
-    length, F_x, F_z, w = _floats(length_m, force_x_N, force_z_N, weight_N_per_m)
+    length, F_x, F_z, w = floats(length_m, force_x_N, force_z_N, weight_N_per_m)
     return np.hypot(F_x, F_z - w * length), np.hypot(F_x, F_z)
 
 
@@ -112,7 +112,7 @@ def lowest_z_m(
 
     V(s) is zero there; without such a point between the ends it is the lower of the two.
     """
-    length, F_x, F_z, EA, w = _floats(
+    length, F_x, F_z, EA, w = floats(
         length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m
     )
     at = np.clip(length - F_z / w, 0.0, length)
@@ -134,8 +134,8 @@ def sag_m(
     V(s) / F_x = -D / X. A steep cable that is slack strays beyond the end of its chord instead:
     then it is how far its lowest point is below its lower end.
     """
-    cable = _floats(length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m)
-    X, D = _floats(horizontal_distance_m, drop_m)
+    cable = floats(length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m)
+    X, D = floats(horizontal_distance_m, drop_m)
     length, F_x, F_z, _EA, w = cable
     with np.errstate(invalid="ignore", divide="ignore"):
         s = length - (F_z + F_x * D / X) / w
@@ -153,7 +153,7 @@ def least_tension_N(
     The horizontal force where the lowest point lies between the ends, else the tension at the lower
     end; V(s) of the module's equations is zero at the lowest point.
     """
-    length, F_x, F_z, w = _floats(length_m, force_x_N, force_z_N, weight_N_per_m)
+    length, F_x, F_z, w = floats(length_m, force_x_N, force_z_N, weight_N_per_m)
     V_0 = F_z - w * length
     nearest = np.where(F_z * V_0 > 0.0, np.minimum(np.abs(F_z), np.abs(V_0)), 0.0)
     return np.asarray(np.hypot(F_x, nearest))
@@ -183,7 +183,7 @@ def length_and_force_z(
     length_m, force_z_N : array (...)
         NaN where no finite length exists (force density not above zero).
     """
-    density, X, D, EA, w = _floats(
+    density, X, D, EA, w = floats(
         force_density_N_per_m, horizontal_distance_m, drop_m, axial_stiffness_N, weight_N_per_m
     )
     kappa = w / EA
@@ -235,7 +235,7 @@ def forces_from_length(
         NaN where no solution exists: an inextensible cable shorter than the distance.
     """
     length, X, D, EA, w = np.broadcast_arrays(
-        *_floats(length_m, horizontal_distance_m, drop_m, axial_stiffness_N, weight_N_per_m)
+        *floats(length_m, horizontal_distance_m, drop_m, axial_stiffness_N, weight_N_per_m)
     )
     kappa = w / EA
     with np.errstate(over="ignore"):  # far from the root the closure grows like exp(2 θ)
@@ -334,5 +334,6 @@ def _force_z(
     return np.asarray(w * (0.5 * length - y * D / ((1.0 + kappa * y) * length)))
 
 
-def _floats(*values: ArrayLike) -> tuple[FloatArray, ...]:
+def floats(*values: ArrayLike) -> tuple[FloatArray, ...]:
+    """Return values as arrays of floats."""
     return tuple(np.asarray(value, dtype=np.float64) for value in values)

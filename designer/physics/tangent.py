@@ -59,10 +59,7 @@ def flexibility_m_per_N(
         Symmetric. Infinite in x for a vertical cable that folds at its lowest point.
     """
     length, F_x, F_z, EA, w = np.broadcast_arrays(
-        *(
-            np.asarray(value, dtype=np.float64)
-            for value in (length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m)
-        )
+        *catenary.floats(length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m)
     )
     V_0 = F_z - w * length
     T_0, T_l = np.hypot(F_x, V_0), np.hypot(F_x, F_z)

@@ -11,10 +11,9 @@ from designer.kernel.calling import CableFigures, Meets, plain, share_out
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.progress import checkpoint
-from designer.statics.geometry import upright_exit_points_m, upright_situation
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.shape import sag_ratio
-from designer.statics.task import LONG
+from designer.statics.task import LONG, situation_at
 
 _SHARE = 64
 """Sizes that one thread takes at a time; the first of them starts without a neighbour."""
@@ -83,7 +82,7 @@ def meet(
         sweep_sizes,
         len(cables),
         _SHARE,
-        upright_situation(robot, poses, upright_exit_points_m(robot)),
+        situation_at(robot, poses),
         plain(1.0 / heaviest),
         CableFigures(
             plain(weight / stiffness),

@@ -14,7 +14,7 @@ beside it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -96,16 +96,7 @@ LIGHT = Effort(
     tolerance=1e-7,
 )
 """For demands that take long to compute."""
-_FOLLOWING = Effort(
-    per_edge=8,
-    per_face=24,
-    inside=192,
-    starts=4,
-    finalists=4,
-    revisited=1,
-    beside=2,
-    tried_beside=32,
-)
+_FOLLOWING = replace(LIGHT, starts=4, finalists=4, from_landmarks=True, tolerance=1e-9)
 """For searches that know where others like them have ended."""
 _MANY, _SCOUTS = 12, 6
 """More searches than this beside each other are made in full for so many of them alone."""
