@@ -37,7 +37,7 @@ from designer.kernel.lanes import (
     put_cables,
     write_lane,
 )
-from designer.kernel.linear import are_below, fill, solve_lanes
+from designer.kernel.linear import are_below, copy, fill, solve_lanes
 from designer.kernel.table import (
     CHORD,
     KAPPA,
@@ -131,7 +131,8 @@ def solve_internal_poses(
             assemble(slopes, cables, poses, rows)
             for i in range(n):
                 _judge(cables[i], read, noise, pull, spread, lane, i)
-                cables[i, _CURVATURE] *= stiffer + turn // _PATIENCE
+                for j in range(LANES):
+                    cables[i, _CURVATURE, j] *= stiffer[j] + turn // _PATIENCE
                 if turn >= _MOST_TURNS - _LAST_TURNS:
                     cables[i, _GRADIENT] = 0.0
             _set_normal(normal, slopes, cables, m)
@@ -200,7 +201,7 @@ def _set_normal(normal: FloatArray, slopes: FloatArray, cables: FloatArray, m: i
                 row, row_slope, column_slope = cables[i], slopes[r, i], slopes[c, i]
                 for j in range(LANES):
                     entry[j] += row_slope[j] * column_slope[j] / row[_CURVATURE, j]
-            normal[c, r] = entry
+            copy(entry, normal[c, r])
         right = normal[r, m]
         for j in range(LANES):
             right[j] = -slopes[r, n, j] - slopes[r, n + 1, j]

@@ -37,7 +37,7 @@ from designer.kernel.lanes import (
     put_cables,
     write_lane,
 )
-from designer.kernel.linear import are_below, fill, solve_lanes
+from designer.kernel.linear import are_below, copy, fill, solve_lanes
 from designer.kernel.table import CHORD, KAPPA, L_0, LANE_ROWS, LANES, SHARE, L, P
 
 _LEAST_PULL = 1.0 / 16.0
@@ -105,7 +105,7 @@ def solve_underactuated_poses(
             _keep_least(normal, cables, 1.0 + turn // _PATIENCE)
             solve_lanes(normal, n, n + 1)
             for i in range(n):
-                slopes[i, n] = normal[i, n]
+                copy(normal[i, n], slopes[i, n])
             fill(poses[STEP], 0.0)
             advance(cables, slopes, poses)
             for i in range(n):
@@ -171,7 +171,9 @@ def _set_left(
     for r in range(rows.size):
         for j in range(LANES):
             slopes[r, n, j] += slopes[r, n + 1, j]
-        slopes[r] *= scale[r]
+        for k in range(n + 2):
+            for j in range(LANES):
+                slopes[r, k, j] *= scale[r]
 
 
 @inner

@@ -28,7 +28,7 @@ from designer.statics.geometry import (
     upright_poses,
 )
 from designer.statics.inverse import Statics
-from designer.statics.stiffness import per_reach, upright_stiffness
+from designer.statics.stiffness import per_reach, scaled, upright_stiffness
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -188,9 +188,8 @@ def _modal_matrices(
     # Turns are measured as displacements at the farthest attachment, or the numbers are far apart.
     scale = per_reach(robot)
     cables = cable_mass_matrix(statics, linear_density_kg_per_m)
-    mass = (cables + platform_mass_matrix(statics, body)) * scale * scale[:, None]
-    stiffness = upright_stiffness(statics) if stiffness is None else stiffness
-    stiffness = stiffness * scale * scale[:, None]
+    mass = scaled(robot, cables + platform_mass_matrix(statics, body))
+    stiffness = scaled(robot, upright_stiffness(statics) if stiffness is None else stiffness)
     stiffness = 0.5 * (stiffness + np.swapaxes(stiffness, -1, -2))
     known = is_known[..., None, None]
     root = np.linalg.cholesky(np.where(known, mass, np.eye(len(scale))))

@@ -104,7 +104,7 @@ def is_stable(robot: Robot, stiffness: FloatArray) -> BoolArray:
 
 
 def scaled(robot: Robot, stiffness: FloatArray) -> FloatArray:
-    """Return the stiffness with turns as displacements at `reach_m`: all in one unit [N/m]."""
+    """Return a stiffness [N/m], or mass, with turns as displacements at `reach_m`: in one unit."""
     scale = per_reach(robot)
     return np.asarray(stiffness * scale * scale[:, None])
 

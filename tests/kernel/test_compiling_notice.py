@@ -10,10 +10,13 @@ from pathlib import Path
 
 import llvmlite.binding
 import numba
+import numpy as np
 import pytest
 
 import designer
+from designer.arrays import FloatArray
 from designer.kernel import compiling
+from designer.kernel.fixed_length import solve_thetas
 
 CODE = """
 import numpy as np
@@ -74,6 +77,29 @@ def test_a_damaged_file_is_compiled_again(
     if damage != "a folder":
         assert damaged
         assert is_found()
+
+
+def _assign(target: FloatArray, source: FloatArray) -> None:
+    target[0] = source
+
+
+@pytest.mark.slow
+def test_no_kernel_holds_messages_about_shapes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Formatted strings are compiled for seconds: hence `designer.kernel.linear.copy`.
+
+    Looks at all kernels that these sources have been compiled to so far.
+    """
+    solve_thetas(*np.full((4, 1), 2.0), np.empty(1))  # one of them at least
+    folder = Path(compiling._Locator(_assign, __file__).get_cache_path()).parent
+    kept = [file for file in folder.rglob("*.nbc") if not file.name.startswith("test_")]
+    assert kept
+    assert [file.name for file in kept if b"unicode" in file.read_bytes()] == []
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    compiling.kernel(_assign)(np.ones((2, 3)), np.ones(3))
+    (file,) = tmp_path.rglob("*.nbc")
+    assert b"unicode" in file.read_bytes()
 
 
 @pytest.mark.slow
