@@ -36,8 +36,6 @@ _APART = 0.025
 """Between starts about the end of a climb, as a share of the space."""
 _CLOSE = 0.01
 """Relative: how far an end may stay below the best to be one of the highest."""
-_MORE_RISE = 2.0
-"""How much a climb may still rise, over what the first part brought to any of its extreme."""
 _MOST_TURNS = 200
 """A demand that grows in ever smaller steps, as at the edge of what can be held, has no end."""
 _SHRINKS = 0.4
@@ -349,7 +347,7 @@ class _PoseSearch:
         at, value = np.concatenate(starts), np.concatenate(demands)
         climbs = Climbs.beginning(search, extreme, at, value, 0.5 / CELLS_A_SIDE)
         self._climb(climbs, 1e-3)
-        climbs = self._finalists(climbs.part(self._in_reach(climbs, climbs.value - value)))
+        climbs = self._finalists(climbs.part(self._in_reach(climbs)))
         self._climb(climbs, effort.tolerance, slides=True)
         beside = self._beside(climbs)
         self._climb(beside, 1e-3)
@@ -393,18 +391,15 @@ class _PoseSearch:
         is_close = climbs.value > best - _CLOSE * np.abs(best)
         return np.asarray(is_close & (rank < self._effort.revisited))
 
-    def _in_reach(self, climbs: Climbs, rise: FloatArray) -> IntArray:
-        """Return the climbs that may still become the highest of their extreme.
+    def _in_reach(self, climbs: Climbs) -> IntArray:
+        """Return the climbs that are hardly below the best of their extreme.
 
-        None rises more from here on than twice what the first part of any has brought; along the
-        border of what counts, where climbs slide later, anything may follow.
+        And all of searches that have met a border of what counts: along it climbs slide later, and
+        anything may follow.
         """
         best = self._best[climbs.search, climbs.extreme]
-        reach = np.zeros(climbs.kind.max(initial=0) + 1)
-        np.maximum.at(reach, climbs.kind, rise)
-        margin = np.maximum(_MORE_RISE * reach[climbs.kind], _CLOSE * np.abs(best))
         is_open = self._has_border[climbs.search]
-        return np.flatnonzero(is_open | (climbs.value >= best - margin))
+        return np.flatnonzero(is_open | (climbs.value >= best - _CLOSE * np.abs(best)))
 
     def _finalists(self, climbs: Climbs) -> Climbs:
         """Leave out climbs that have come to the same place as a better one, or stay far behind."""
