@@ -381,26 +381,27 @@ def _measure(pose: Pose, c: float) -> tuple[float, float, float, float]:
 
 @inner
 def store(
-    out: Answers, at: int, pose: Pose, ask: Ask, s: float, gap: float, straight_c: float
+    out: Answers, at: int, pose: Pose, c: float, gap: float, straight_c: float, sizing: bool
 ) -> int:
     """Write a pose's answer, NaN unless it is solved; return that, or not converged.
 
     Parameters
     ----------
-    s, gap : float
-        What is as large as can be, and how far the state is from optimal.
+    c, gap : float
+        Inverse weight [m/N], and how far the state is from optimal.
     straight_c : float
         Largest scaled inverse weight of straight cables; none if not above zero.
+    sizing : bool
+        Whether c was sought or given.
     """
     cables, scale = pose.cables, pose.scale
-    c = (ask.c_0 + s * ask.c_s) / (scale[SIZE] / scale[FORCE])
     closure, apart, error, overload = _measure(pose, c)
     heaviest, massless = abs(c) * scale[SIZE], 0.0
     for i in range(cables.shape[1]):
         heaviest = max(heaviest, cables[SHARE, i] * cables[T, i])
         massless = max(massless, cables[STRAIGHT, i])
     residual = apart + error / heaviest if gap <= OPTIMAL_WITHIN else np.inf
-    verdict = judge(residual, c, overload, ask.c_s > 0.0)
+    verdict = judge(residual, c, overload, sizing)
     w = write_pose(out, at, verdict, c, closure, error)
     for i in range(cables.shape[1]):
         write_cable(out, at, i, cables, i, w)

@@ -119,6 +119,7 @@ def solve_redundant_range(
     pose = new_pose(situation, figures)
     lp = new_programme(m, n)
     scratch = new_scratch(m, n)
+    sizing = inverse_weight[0] < 0.0
     for at in range(start, stop):
         place(pose, situation, figures, at)
         straight_c, spans = massless(pose, lp)
@@ -128,17 +129,20 @@ def solve_redundant_range(
             out.verdict[at] = NOT_CONVERGED
             continue
         limit_sag(pose)
+        to_scaled = pose.scale[SIZE] / pose.scale[FORCE]
         ask = asked(pose, inverse_weight[at if inverse_weight.size > 1 else 0])
         s, gap = _walk(pose, lp, ask, scratch)
         verdict = NOT_CONVERGED
         if gap <= OPTIMAL_WITHIN:
-            verdict = store(out, at, pose, ask, s, gap, straight_c)
+            c = (ask.c_0 + s * ask.c_s) / to_scaled
+            verdict = store(out, at, pose, c, gap, straight_c, sizing)
         for keep in KEPT_PULLS:
             if verdict != SOLVED:
-                s = START_OF_STRAIGHT * straight_c if ask.c_s > 0.0 else -1.0
+                s = START_OF_STRAIGHT * straight_c if sizing else -1.0
                 pull_straight(pose, ask, s)
                 s, gap = climb(pose, ask, s, keep, PATIENCE, scratch)
-                verdict = store(out, at, pose, ask, s, gap, straight_c)
+                c = (ask.c_0 + s * ask.c_s) / to_scaled
+                verdict = store(out, at, pose, c, gap, straight_c, sizing)
 
 
 @kernel

@@ -179,7 +179,8 @@ def _better(
     if not gap <= OPTIMAL_WITHIN or not (s > best + _BETTER * abs(s) or best == -np.inf):
         return best
     before, of_pose, of_cables = out.verdict[at], out.poses[at].copy(), out.cables[at].copy()
-    if store(out, at, pose, ask, s, gap, straight_c) == SOLVED:
+    c = (ask.c_0 + s * ask.c_s) / (pose.scale[SIZE] / pose.scale[FORCE])
+    if store(out, at, pose, c, gap, straight_c, ask.c_s > 0.0) == SOLVED:
         return s
     out.verdict[at] = before
     copy(of_pose, out.poses[at])
