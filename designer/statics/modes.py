@@ -95,10 +95,7 @@ def platform_mass_matrix(statics: Statics, body: Platform) -> FloatArray:
 
 
 def platform_frequencies_Hz(
-    statics: Statics,
-    body: Platform,
-    linear_density_kg_per_m: FloatArray | float,
-    stiffness: FloatArray | None = None,
+    statics: Statics, body: Platform, linear_density_kg_per_m: FloatArray | float
 ) -> FloatArray:
     """Return the natural frequencies of the platform (..., dof), ascending [Hz].
 
@@ -110,8 +107,6 @@ def platform_frequencies_Hz(
         What is accelerated: mass and inertia without the dynamic factor of a load case.
     linear_density_kg_per_m : float or array (1 or n_cables,)
         Of the cables, with ice and without the load of the wind [kg/m].
-    stiffness : array (..., dof, dof), optional
-        `upright_stiffness` of the statics, where it is known already.
 
     Returns
     -------
@@ -119,9 +114,9 @@ def platform_frequencies_Hz(
         Zero for each way in which the platform would not stay; NaN where the pose is not solved or
         the platform's inertia is not known.
     """
-    matrix, _, _ = _modal_matrices(statics, body, linear_density_kg_per_m, stiffness)
+    stiffness, _, _ = _modal_matrices(statics, body, linear_density_kg_per_m)
     is_known = (statics.is_solved & knows_inertia(statics.robot, body))[..., None]
-    squares = np.asarray(np.linalg.eigvalsh(matrix))
+    squares = np.asarray(np.linalg.eigvalsh(stiffness))
     return np.where(is_known, _frequencies_Hz(squares), np.nan)
 
 
@@ -172,10 +167,7 @@ def _frequencies_Hz(squares: FloatArray) -> FloatArray:
 
 
 def _modal_matrices(
-    statics: Statics,
-    body: Platform,
-    linear_density_kg_per_m: FloatArray | float,
-    stiffness: FloatArray | None = None,
+    statics: Statics, body: Platform, linear_density_kg_per_m: FloatArray | float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the stiffness over the mass, and two further matrices (..., dof, dof).
 
@@ -189,7 +181,7 @@ def _modal_matrices(
     scale = per_reach(robot)
     cables = cable_mass_matrix(statics, linear_density_kg_per_m)
     mass = scaled(robot, cables + platform_mass_matrix(statics, body))
-    stiffness = scaled(robot, upright_stiffness(statics) if stiffness is None else stiffness)
+    stiffness = scaled(robot, upright_stiffness(statics))
     stiffness = 0.5 * (stiffness + np.swapaxes(stiffness, -1, -2))
     known = is_known[..., None, None]
     root = np.linalg.cholesky(np.where(known, mass, np.eye(len(scale))))

@@ -120,29 +120,25 @@ def reach_m(robot: Robot) -> float:
     return farthest if farthest > 0.0 else 1.0
 
 
-def compliance(statics: Statics, stiffness: FloatArray | None = None) -> FloatArray:
+def compliance(statics: Statics) -> FloatArray:
     """Return the displacement under a unit wrench (..., dof, dof) [m/N, 1/N, 1/(N·m)].
 
-    The inverse of `platform_stiffness`, or of the one given; NaN where the pose is not solved or
-    not stable.
+    The inverse of `platform_stiffness`; NaN where the pose is not solved or not stable.
     """
-    K = platform_stiffness(statics) if stiffness is None else stiffness
+    K = platform_stiffness(statics)
     good = statics.is_solved & is_stable(statics.robot, K)
     safe = np.where(good[..., None, None], K, np.eye(K.shape[-1]))
     return np.where(good[..., None, None], np.linalg.inv(safe), np.nan)
 
 
-def largest_displacement_m_per_N(
-    statics: Statics, stiffness: FloatArray | None = None
-) -> FloatArray:
+def largest_displacement_m_per_N(statics: Statics) -> FloatArray:
     """Return how far a unit force at the origin of the body frame can move it (...) [m/N].
 
     The force may point anywhere, and the platform may turn; the inverse of this is the smallest
-    translational stiffness. NaN where the pose is not solved or not stable. The ``stiffness`` of
-    the platform, along whatever axes, is computed if it is not given.
+    translational stiffness. NaN where the pose is not solved or not stable.
     """
     n = int((statics.robot.balance_rows < 3).sum())
-    C = compliance(statics, stiffness)[..., :n, :n]
+    C = compliance(statics)[..., :n, :n]
     good = np.asarray(np.isfinite(C).all(axis=(-2, -1)))
     C = np.where(good[..., None, None], C, 0.0)  # symmetric, as an equilibrium has it
     largest = np.linalg.eigvalsh(0.5 * (C + np.swapaxes(C, -1, -2)))[..., -1]

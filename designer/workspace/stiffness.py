@@ -14,7 +14,7 @@ from designer.model.space import named_position
 from designer.model.workspace import Workspace
 from designer.statics.inverse import solve_sagging
 from designer.statics.modes import knows_inertia, platform_frequencies_Hz
-from designer.statics.stiffness import largest_displacement_m_per_N, upright_stiffness
+from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.workspace.demand import is_left_out
 from designer.workspace.refine import LIGHT, refine_over_branches
 
@@ -64,13 +64,17 @@ def survey_stiffness(
 
     The search starts from `MOST_SAMPLES` of the workspace's samples.
     """
-    displacement = partial(displacement_demand, robot, workspace, cable, with_frequency=True)
+    displacement = partial(displacement_demand, robot, workspace, cable)
     thinned = workspace.thinned(MOST_SAMPLES)
     demand = displacement(thinned)
     counts = ~np.isneginf(demand[:, 0])
     if np.isneginf(demand[:, 1]).all():
         return None
-    softest, stiffest, *slowest = refine_over_branches(workspace.space, displacement, thinned)
+    softest, stiffest = refine_over_branches(workspace.space, displacement, thinned)
+    slowest = []
+    if knows_inertia(robot, robot.platform):  # each by itself, since a frequency takes longer
+        slowness = partial(_slowness, robot, workspace, cable)
+        slowest = refine_over_branches(workspace.space, slowness, thinned)
     return StiffnessSurvey(
         samples=int(counts.sum()),
         unstable=int(np.isposinf(demand[:, 0]).sum()),
@@ -114,22 +118,30 @@ def displacement_demand(
     places: FloatArray,
     *,
     seeks_better: bool = True,
-    with_frequency: bool = False,
 ) -> FloatArray:
     """Displacement under a unit force, and negated, (n, 2) [m/N].
 
-    Inf and -inf where the platform would not stay, all -inf where the pose does not count. With the
-    lowest frequency, negated, (n, 3) where that is asked for and the inertia known [Hz].
+    Inf and -inf where the platform would not stay, both -inf where the pose does not count.
     """
     statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
     counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
-    stiffness, body = upright_stiffness(statics), robot.platform
-    displacement = largest_displacement_m_per_N(statics, stiffness)
+    displacement = largest_displacement_m_per_N(statics)
     stays = counts & np.isfinite(displacement)
     softest = np.where(stays, displacement, np.where(counts, np.inf, -np.inf))
-    columns = [softest, np.where(stays, -displacement, -np.inf)]
-    if with_frequency and knows_inertia(robot, body):
-        density = cable.linear_density_kg_per_m
-        frequencies = platform_frequencies_Hz(statics, body, density, stiffness)
-        columns.append(np.where(counts, -frequencies[:, 0], -np.inf))
-    return np.column_stack(columns)
+    return np.column_stack([softest, np.where(stays, -displacement, -np.inf)])
+
+
+def _slowness(
+    robot: Robot,
+    workspace: Workspace,
+    cable: Cable | Cables,
+    places: FloatArray,
+    *,
+    seeks_better: bool = True,
+) -> FloatArray:
+    """Return the lowest frequency, negated (n,) [Hz]; -inf where the pose does not count."""
+    statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
+    counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+    density = cable.linear_density_kg_per_m
+    frequencies = platform_frequencies_Hz(statics, robot.platform, density)
+    return np.where(counts, -frequencies[:, 0], -np.inf)
