@@ -21,7 +21,7 @@ from designer.workspace.clearance import (
     names_of,
 )
 from designer.workspace.demand import is_left_out
-from designer.workspace.refine import LIGHT, refine, refine_over_branches
+from designer.workspace.refine import LIGHT, places_of, refine, refine_over_branches
 
 MOST_SAMPLES = 1000
 """Poses that are looked at before the search between them."""
@@ -114,8 +114,7 @@ def where_pairs_are_near(
     space = workspace.space
     if space.is_discrete or not len(cable_pairs(robot)):
         return np.empty((0, space.n_coordinates))
-    ends = np.array([worst.place for worst in refine(space, nearness, places, _A_CLIMB_EACH)])
-    return np.asarray(ends[np.isfinite(ends).all(axis=1)])
+    return places_of(refine(space, nearness, places, _A_CLIMB_EACH))
 
 
 def survey(

@@ -13,7 +13,7 @@ beside it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -127,6 +127,12 @@ def refine_each(
     return _PoseSearch(space, demand, effort or Effort(), len(starts)).run(starts)
 
 
+def places_of(worsts: Iterable[Worst]) -> FloatArray:
+    """Return where the largest demands are (n, n_coordinates), without those at no place."""
+    places = np.array([worst.place for worst in worsts])
+    return np.asarray(places[np.isfinite(places).all(axis=1)])
+
+
 def refine_over_branches(
     space: Space, demand: Demand, starts: FloatArray, effort: Effort | None = None
 ) -> list[Worst]:
@@ -174,10 +180,6 @@ def refine_each_over_branches(
         ends = np.concatenate([known, *map(places_of, worsts)])
         others = searched(demand, np.setdiff1d(among, scouts), _FOLLOWING, ends)
         return dict(zip(scouts.tolist(), worsts, strict=True)) | others
-
-    def places_of(worsts: Sequence[Worst]) -> FloatArray:
-        places = np.array([worst.place for worst in worsts])
-        return np.asarray(places[np.isfinite(places).all(axis=1)])
 
     every, nowhere = np.arange(len(starts)), np.empty((0, space.n_coordinates))
     hard = changed(starts, every)

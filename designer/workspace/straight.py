@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
@@ -11,11 +12,12 @@ from designer.arrays import FloatArray, IntArray
 from designer.model.robot import Poses, Robot
 from designer.model.space import Space
 from designer.statics.distribution import tension_over_least
-from designer.workspace.refine import LIGHT, refine_each
+from designer.workspace.refine import LIGHT, places_of, refine_each
 
 _A_CLIMB_EACH = replace(
     LIGHT, inside=512, starts=2, finalists=1, revisited=0, tolerance=1e-2, rounds=0
 )
+"""For each cable: what is found here is searched again with the cable's weight."""
 
 
 def where_each_pulls_most(robots: Sequence[Robot], space: Space, places: FloatArray) -> FloatArray:
@@ -36,5 +38,4 @@ def where_each_pulls_most(robots: Sequence[Robot], space: Space, places: FloatAr
         return np.nan_to_num(np.concatenate(over), nan=-np.inf)
 
     worsts = refine_each(space, pull, [places] * len(robots), _A_CLIMB_EACH)
-    ends = np.array([worst.place for of_load in worsts for worst in of_load])
-    return np.asarray(ends[np.isfinite(ends).all(axis=1)])
+    return places_of(chain.from_iterable(worsts))
