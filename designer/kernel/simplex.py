@@ -24,6 +24,8 @@ _TOLERANCE = 1e-11
 _RANK = 1e-9
 """Largest element of a row below which it depends on the others."""
 _SMALLEST_PIVOT = 1e-12
+_STEEPEST = 1e9
+"""Fall of s at a vertex that hardly depends on it."""
 _MOST_PIVOTS = 60
 """And as many again as there are unknowns."""
 _NOWHERE, _AT_ZERO, AT_TOP = range(3)
@@ -77,7 +79,10 @@ def new_programme(m: int, n: int) -> Programme:
 
 @element
 def choose_basis(lp: Programme) -> bool:
-    """Eliminate, choosing the largest element of each row; False if the rows are dependent."""
+    """Eliminate, choosing the largest element of each row; False if the rows are dependent.
+
+    The other unknowns then rest where s cannot grow.
+    """
     table, basis = lp.table, lp.basis
     m, n = basis.size, lp.dual.size
     for k in range(m):
@@ -97,6 +102,7 @@ def choose_basis(lp: Programme) -> bool:
         return False
     _pivot(table, row, n)
     basis[row] = n
+    _rest(lp)
     return True
 
 
@@ -122,11 +128,10 @@ def rebuild(lp: Programme) -> bool:
 
 @element
 def maximise(lp: Programme) -> int:
-    """Solve from an eliminated table; return `OPTIMAL` or why not."""
-    _rest(lp)
-    for _ in range(_MOST_PIVOTS + lp.dual.size):
+    """Solve from an eliminated table and where unknowns rest; return `OPTIMAL` or why not."""
+    for turn in range(_MOST_PIVOTS + lp.dual.size):
         s_row = _vertex(lp)
-        if _has_closed(lp):
+        if _has_closed(lp) or (turn == 0 and not _is_summit(lp)):
             # Beyond the s at which some room closes the bounds cross: rest anew, and come down.
             _rest(lp)
             s_row = _vertex(lp)
@@ -186,6 +191,16 @@ def _vertex(lp: Programme) -> int:
                 value -= table[k, j] * z[j] if rests[j] == AT_TOP else 0.0
             z[basis[k]] = value
     return s_row
+
+
+@element
+def _is_summit(lp: Programme) -> bool:
+    """Tell whether s falls wherever an unknown leaves its bound, as it may not in a new table."""
+    for j in range(lp.dual.size):
+        fall = -lp.dual[j] if lp.rests[j] == AT_TOP else lp.dual[j]
+        if not 0.0 <= fall < _STEEPEST:
+            return False
+    return True
 
 
 @element
