@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -16,10 +16,16 @@ from designer.selection.criteria import Criterion, starts_of_each
 from designer.selection.requirements import CaseLoads, Evaluation, equilibria, evaluate
 from designer.statics.inverse import Statics
 from designer.statics.reactions import platform_branch_N, reaction_N, winch_branch_N
+from designer.workspace.refine import LIGHT
 
 EXTREMES = ("largest", "horizontal", "up", "down")
 """Of which of its sizes a reaction is largest; the last two along the true vertical, so that an
 upward force that never is one has a negative size."""
+_A_CLIMB = replace(
+    LIGHT, per_edge=0, per_face=0, inside=0, starts=1, finalists=1, revisited=0, rounds=0,
+    tolerance=1e-4,
+)  # fmt: skip
+"""Of the place after its loads were turned: there are a hundred extremes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,10 +75,9 @@ def sizes_N(statics: Statics) -> FloatArray:
 def reactions_of(loads: Sequence[CaseLoads], progress: Advance) -> tuple[Reaction, ...]:
     """Return the extremes of each support in each load case, searched as requirements are.
 
-    Wind and inertia force are turned to where they are worst at the place that is worst in one of
-    their first directions.
+    Where wind and inertia force are turned to the worst, the place follows by a short climb.
     """
-    evaluations = evaluate(loads, _criteria(loads), progress, searches_again=False)
+    evaluations = evaluate(loads, _criteria(loads), progress, again=_A_CLIMB)
     reactions = map(_reaction, evaluations)
     order = {case.case.name: number for number, case in enumerate(loads)}
     return tuple(

@@ -493,8 +493,8 @@ def steepest(
     """Turn wind and inertia force, by smaller steps where nothing gets more severe.
 
     Tried are all ways aside, and where all severities were highest if they were linear in the
-    direction. Returns the direction that ends in, and the severity there; ``severity`` is where it
-    starts.
+    direction; it ends early where that, after the first step, leads nowhere. Returns the direction
+    that it ends in, and the severity there; ``severity`` is where it starts.
     """
     step = 0.5
     while step > 1e-6:
@@ -504,7 +504,10 @@ def steepest(
             trials.append((severity_of(summit), summit))
         highest, turned = max(trials, key=lambda trial: trial[0])
         gains = highest > severity
+        is_level = abs(highest - severity) <= _SAME * abs(severity)
         loaded, severity = (turned, highest) if gains else (loaded, severity)
+        if turned is summit and is_level and step < 0.5:
+            break
         step *= 0.02 if turned is summit else 2.0 if gains else 0.125
     return loaded, severity
 

@@ -28,6 +28,8 @@ ROUNDING = 1e-9
 """Relative: how exactly the solver keeps a limit that it chooses the internal forces by."""
 _APART = 0.02
 """Relative: how much lower the lowest frequency with the cables' own may be before it is told."""
+_MOST_LOADS = 14
+"""In which straight cables are searched, of those of a load case: as many as inertia forces."""
 WHERE = "searched over the poses of the case"
 
 
@@ -190,8 +192,8 @@ def starts_of_each(
     directions: Sequence[Loaded], workspace: Workspace, places: FloatArray
 ) -> FloatArray:
     """Return where to search for what each cable meets; see `where_each_pulls_most`."""
-    robots = [loaded.robot for loaded in directions]
-    return where_each_pulls_most(robots, workspace.space, places)
+    among = directions[:: -(-len(directions) // _MOST_LOADS)]
+    return where_each_pulls_most([loaded.robot for loaded in among], workspace.space, places)
 
 
 def _winch_capacity_N(statics: Statics) -> FloatArray:

@@ -32,7 +32,7 @@ from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
 from designer.study import Selection
 from designer.workspace.demand import is_left_out, rope_demand, settled
-from designer.workspace.refine import LIGHT, Worst, refine_over_branches
+from designer.workspace.refine import LIGHT, Effort, Worst, refine_over_branches
 
 QUICK_SAMPLES, SLOW_SAMPLES, FEWEST_SAMPLES = 2000, 500, 16
 """Poses evaluated in all directions of a load case together, of robots that are quick or slow to
@@ -97,16 +97,16 @@ def evaluate(
     criteria: Sequence[Criterion],
     progress: Advance = lambda _: None,
     *,
-    searches_again: bool = True,
+    again: Effort = LIGHT,
 ) -> tuple[Evaluation, ...]:
     """Return each criterion in each load case, where it comes nearest to failing.
 
     ``progress`` is called with 1 after each load case. After wind and inertia force were turned to
-    where they are worst, the place ``searches_again``, by turns.
+    where they are worst, the place is searched ``again`` with this effort, by turns.
     """
     evaluations: list[Evaluation] = []
     for case_loads in loads:
-        evaluations += _evaluate_case(case_loads, criteria, searches_again)
+        evaluations += _evaluate_case(case_loads, criteria, again)
         progress(1)
     return tuple(evaluations)
 
@@ -124,7 +124,7 @@ def _at_place(
 
 
 def _evaluate_case(
-    loads: CaseLoads, criteria: Sequence[Criterion], searches_again: bool
+    loads: CaseLoads, criteria: Sequence[Criterion], again: Effort
 ) -> Iterator[Evaluation]:
     keeps = loads.keeps_lengths
     lost = any(loaded.lost_cable for loaded in loads.directions)
@@ -154,7 +154,7 @@ def _evaluate_case(
         for criterion, extreme in zip(columns, extremes, strict=True):
             if np.isneginf(extreme.demand):  # no pose of the case counts
                 continue
-            turned, place = _turned(criterion, loaded, workspace, extreme, searches_again)
+            turned, place = _turned(criterion, loaded, workspace, extreme, again)
             requirement = _at_place(criterion, turned, workspace, place)
             if requirement is not None:
                 yield Evaluation(criterion, loads, turned, requirement)
@@ -165,7 +165,7 @@ def _turned(
     loaded: Loaded,
     workspace: Workspace,
     extreme: Worst,
-    searches_again: bool,
+    again: Effort,
 ) -> tuple[Loaded, FloatArray]:
     """Turn wind and inertia force to where they are worst, and search the pose again, by turns."""
     if not loaded.is_turned:
@@ -177,11 +177,11 @@ def _turned(
             return float(_severity(other, workspace, [criterion], place[None])[0, 0])
 
         loaded, severity = steepest(loaded, before, severity_of)
-        if loaded.keeps_lengths or not searches_again:  # a search for the pose takes long
+        if loaded.keeps_lengths:  # a search for the pose takes long
             break
         demand = partial(_severity, loaded, workspace, [criterion])
-        (again,) = refine_over_branches(workspace.space, demand, place[None], LIGHT)
-        extreme = again if again.demand > severity else Worst(place, severity)
+        (moved,) = refine_over_branches(workspace.space, demand, place[None], again)
+        extreme = moved if moved.demand > severity else Worst(place, severity)
         if extreme.demand <= before + ROUNDING * abs(before):
             break
     return loaded, extreme.place
