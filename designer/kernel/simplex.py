@@ -132,7 +132,8 @@ def maximise(lp: Programme) -> int:
     for turn in range(_MOST_PIVOTS + lp.dual.size):
         s_row = _vertex(lp)
         if _has_closed(lp) or (turn == 0 and not _is_summit(lp)):
-            # Beyond the s at which some room closes the bounds cross: rest anew, and come down.
+            # Beyond the s at which some room closes the bounds cross, and where another table was
+            # at its summit this one may not be: rest anew, and come down.
             _rest(lp)
             s_row = _vertex(lp)
         row, at_upper, excess = _most_violated(lp)
@@ -195,7 +196,7 @@ def _vertex(lp: Programme) -> int:
 
 @element
 def _is_summit(lp: Programme) -> bool:
-    """Tell whether s falls wherever an unknown leaves its bound, as it may not in a new table."""
+    """Tell whether s falls wherever an unknown leaves its bound."""
     for j in range(lp.dual.size):
         fall = -lp.dual[j] if lp.rests[j] == AT_TOP else lp.dual[j]
         if not 0.0 <= fall < _STEEPEST:

@@ -29,7 +29,7 @@ ROUNDING = 1e-9
 _APART = 0.02
 """Relative: how much lower the lowest frequency with the cables' own may be before it is told."""
 _MOST_LOADS = 14
-"""In which straight cables are searched, of those of a load case: as many as inertia forces."""
+"""Of those of a load case, in which straight cables are searched: as many as inertia forces."""
 WHERE = "searched over the poses of the case"
 
 

@@ -177,7 +177,8 @@ def _turned(
             return float(_severity(other, workspace, [criterion], place[None])[0, 0])
 
         loaded, severity = steepest(loaded, before, severity_of)
-        if loaded.keeps_lengths:  # a search for the pose takes long
+        # A search for the pose takes long there; between single points there is nowhere to climb.
+        if loaded.keeps_lengths or (workspace.space.is_discrete and not again.rounds):
             break
         demand = partial(_severity, loaded, workspace, [criterion])
         (moved,) = refine_over_branches(workspace.space, demand, place[None], again)
