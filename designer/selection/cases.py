@@ -411,7 +411,7 @@ def _turned_once(result: CaseResult, passed: list[CaseResult]) -> CaseResult:
         (result,) = _search_once([result], is_light=True)
     others = tuple(passed)
     for _ in range(_MOST_ROUNDS):
-        before, steeper = result.utilisation, _steepest(result)
+        steeper = _steepest(result)
         if result.loaded.keeps_lengths:  # a search for the pose takes long
             return governing([result, steeper])
         if any(_is_beside(steeper, other) for other in others):
@@ -421,9 +421,9 @@ def _turned_once(result: CaseResult, passed: list[CaseResult]) -> CaseResult:
         start = steeper.verification.worst_place[None]
         (worst,) = refine_over_branches(steeper.workspace.space, demand, start, LIGHT)
         moved = _with_worst(steeper, worst)
-        steeper = moved if moved.utilisation > steeper.utilisation else steeper
-        result = steeper if steeper.utilisation > before else result
-        if not np.isfinite(result.utilisation) or result.utilisation <= before * (1.0 + _SAME):
+        result = governing([result, steeper, moved])
+        gain = moved.utilisation / steeper.utilisation - 1.0
+        if not np.isfinite(result.utilisation) or gain <= _SAME:
             break
     return result
 

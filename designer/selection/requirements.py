@@ -171,6 +171,22 @@ def _turned(
     if not loaded.is_turned:
         return loaded, extreme.place
     for _ in range(_MOST_ROUNDS):
+        place = extreme.place
+
+        def severity_of(other: Loaded, place: FloatArray = place) -> float:
+            return float(_severity(other, workspace, [criterion], place[None])[0, 0])
+
+        loaded, severity = steepest(loaded, extreme.demand, severity_of)
+        # A search for the pose takes long there; between single points there is nowhere to climb.
+        if loaded.keeps_lengths or (workspace.space.is_discrete and not again.rounds):
+            break
+        demand = partial(_severity, loaded, workspace, [criterion])
+        (moved,) = refine_over_branches(workspace.space, demand, place[None], again)
+        if moved.demand <= severity + ROUNDING * abs(severity):
+            break
+        extreme = moved
+    return loaded, extreme.place
+    for _ in range(_MOST_ROUNDS):
         place, before = extreme.place, extreme.demand
 
         def severity_of(other: Loaded, place: FloatArray = place) -> float:
