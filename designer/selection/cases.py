@@ -422,8 +422,8 @@ def _turned_once(result: CaseResult, passed: list[CaseResult]) -> CaseResult:
         (worst,) = refine_over_branches(steeper.workspace.space, demand, start, LIGHT)
         moved = _with_worst(steeper, worst)
         result = governing([result, steeper, moved])
-        gain = moved.utilisation / steeper.utilisation - 1.0
-        if not np.isfinite(result.utilisation) or gain <= _SAME:
+        has_moved = moved.utilisation > steeper.utilisation * (1.0 + _SAME)
+        if not (has_moved and np.isfinite(result.utilisation)):
             break
     return result
 

@@ -186,22 +186,6 @@ def _turned(
             break
         extreme = moved
     return loaded, extreme.place
-    for _ in range(_MOST_ROUNDS):
-        place, before = extreme.place, extreme.demand
-
-        def severity_of(other: Loaded, place: FloatArray = place) -> float:
-            return float(_severity(other, workspace, [criterion], place[None])[0, 0])
-
-        loaded, severity = steepest(loaded, before, severity_of)
-        # A search for the pose takes long there; between single points there is nowhere to climb.
-        if loaded.keeps_lengths or (workspace.space.is_discrete and not again.rounds):
-            break
-        demand = partial(_severity, loaded, workspace, [criterion])
-        (moved,) = refine_over_branches(workspace.space, demand, place[None], again)
-        extreme = moved if moved.demand > severity else Worst(place, severity)
-        if extreme.demand <= before + ROUNDING * abs(before):
-            break
-    return loaded, extreme.place
 
 
 def _severity(
