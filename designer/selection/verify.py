@@ -184,9 +184,9 @@ def verify_sizes(
     The landmarks of the border are not among the samples that are counted. Memory does not grow
     with the samples. ``progress`` is called with the number of samples done.
 
-    With ``gives_up``, a cable is left alone after the first chunk of samples with one that it
-    cannot hold, or that takes it beyond its allowable tension, which settles that it does not serve
-    the workspace.
+    With ``gives_up``, a cable is left alone after the landmarks, or the first chunk of samples,
+    with one that it cannot hold or that takes it beyond its allowable tension, which settles that
+    it does not serve the workspace.
     """
     # The heavy ones first: slack cables are the harder, and start best from slack ones.
     order = sorted(range(len(cables)), key=lambda k: -cables[k].mean_density_kg_per_m)
@@ -197,9 +197,7 @@ def verify_sizes(
     for chunk, counts in chain([(space.landmarks(), False)], samples):
         for start in range(0, len(chunk), chunk_size):
             places = chunk[start : start + chunk_size]
-            settled = totals.not_held > 0
-            if is_slow or totals.samples:  # else landmarks alone would stand for the samples
-                settled |= totals.utilisation.max(axis=1) > 1.0
+            settled = (totals.not_held > 0) | (totals.utilisation.max(axis=1) > 1.0)
             alive = [k for k in order if not (gives_up and settled[k])]
             x, y, z, turn = space.cells(places, _CELLS_A_SIDE).T
             cells = ((x * _CELLS_A_SIDE + y) * _CELLS_A_SIDE + z) * _TURNS + turn % _TURNS
