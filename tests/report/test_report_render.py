@@ -84,6 +84,13 @@ def test_page_has_no_script_of_its_own(report: Report) -> None:
     assert "script" not in loads(render_html(report)).tags
 
 
+def test_sentences_are_apart(analyses: dict[str, Analysis], kept: Analysis) -> None:
+    for analysis in (*analyses.values(), kept):
+        page = render_html(design_report(analysis, draws=False))
+        for paragraph in re.findall(r"<(p|td|li|figcaption)\b[^>]*>(.*?)</\1>", page, re.DOTALL):
+            assert not re.search(r"[a-z)%]\.[A-Z][a-z]", re.sub(r"<[^>]+>", "", paragraph[1]))
+
+
 def test_wide_tables_and_pictures_are_scrolled_by_keys(drawn: Report) -> None:
     html = render_html(drawn)
     assert html.count('<div class="scroll" tabindex="0" role="region" aria-label="') >= 5
