@@ -259,6 +259,10 @@ def _scatter(
 
 def set_limits(axes: Axes, flat: FloatArray, corners: FloatArray) -> None:
     """Set the limits, around the exit points, with their names, unless the region were a speck."""
+    from matplotlib.ticker import MaxNLocator
+
+    for axis in (axes.xaxis, axes.yaxis):  # steps of a quarter have names too long for a small map
+        axis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10]))
     middle, half, shows_corners = _frame(flat, corners)
     axes.set_aspect("equal")
     (left, low), (right, high) = middle - half, middle + half
