@@ -13,7 +13,7 @@ from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.selection.usable import Usable, UsableSize
 from designer.statics.inverse import solve_sagging
-from designer.workspace.demand import is_left_out
+from designer.workspace.demand import is_counted
 
 _MOST = 5
 _BEYOND = 1e3
@@ -90,7 +90,7 @@ def _utilisation(
     for turn_rad in turns.swapaxes(0, 1):
         poses = Poses.at(position_m, turn_rad.reshape(position_m.shape))
         statics = solve_sagging(robot, poses, size.cable)
-        serves = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+        serves = is_counted(statics, workspace.hangs_below)
         used = statics.largest_tension_N / size.cable.allowable_tension_N
         largest = np.maximum(largest, np.where(serves, np.minimum(used, _BEYOND), _BEYOND))
     return largest

@@ -16,15 +16,12 @@ from designer.selection.criteria import Criterion, starts_of_each
 from designer.selection.requirements import CaseLoads, Evaluation, equilibria, evaluate
 from designer.statics.inverse import Statics
 from designer.statics.reactions import platform_branch_N, reaction_N, winch_branch_N
-from designer.workspace.refine import LIGHT
+from designer.workspace.refine import ONE_CLIMB
 
 EXTREMES = ("largest", "horizontal", "up", "down")
 """Of which of its sizes a reaction is largest; the last two along the true vertical, so that an
 upward force that never is one has a negative size."""
-_A_CLIMB = replace(
-    LIGHT, per_edge=0, per_face=0, inside=0, starts=1, finalists=1, revisited=0, rounds=0,
-    tolerance=1e-4,
-)  # fmt: skip
+_FROM_THERE = replace(ONE_CLIMB, per_edge=0, per_face=0, inside=0, tolerance=1e-4)
 """Of the place after its loads were turned: there are a hundred extremes."""
 
 
@@ -77,7 +74,7 @@ def reactions_of(loads: Sequence[CaseLoads], progress: Advance) -> tuple[Reactio
 
     Where wind and inertia force are turned to the worst, the place follows by a short climb.
     """
-    evaluations = evaluate(loads, _criteria(loads), progress, again=_A_CLIMB)
+    evaluations = evaluate(loads, _criteria(loads), progress, again=_FROM_THERE)
     reactions = map(_reaction, evaluations)
     order = {case.case.name: number for number, case in enumerate(loads)}
     return tuple(

@@ -31,7 +31,7 @@ from designer.statics.cable_loss import Fate
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
 from designer.study import Selection
-from designer.workspace.demand import is_left_out, rope_demand, settled
+from designer.workspace.demand import is_counted, is_left_out, rope_demand, settled
 from designer.workspace.refine import LIGHT, Effort, Worst, refine_over_branches
 
 QUICK_SAMPLES, SLOW_SAMPLES, FEWEST_SAMPLES = 2000, 500, 16
@@ -215,7 +215,7 @@ def equilibria(
     poses = Poses.at(places)
     if not loaded.keeps_lengths:
         statics = solve_sagging(loaded.robot, poses, loaded.cable, seeks_better=seeks_better)
-        counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+        counts = is_counted(statics, workspace.hangs_below)
         return statics, np.arange(len(places)), counts
     loss = settled(loaded, poses, seeks_better=seeks_better)
     rows = np.flatnonzero(loss.before.is_solved)

@@ -14,7 +14,7 @@ from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.statics.inverse import solve_sagging
 from designer.statics.sizes import is_quick
-from designer.workspace.demand import is_left_out
+from designer.workspace.demand import is_counted
 
 _FEW_PLACES, _FEW_POSITIONS = 1000, 100
 """Asked at least of robots that are slow to solve: places, and positions in all orientations."""
@@ -75,7 +75,7 @@ class Usable:
 def serves(robot: Robot, workspace: Workspace, cable: Cable, places: FloatArray) -> BoolArray:
     """Tell which places (n, n_coordinates) count and keep a cable within its allowable tension."""
     statics = solve_sagging(robot, Poses.at(places), cable)
-    counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+    counts = is_counted(statics, workspace.hangs_below)
     with np.errstate(invalid="ignore"):
         return np.asarray(counts & (statics.largest_tension_N <= cable.allowable_tension_N))
 

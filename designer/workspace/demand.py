@@ -27,6 +27,11 @@ def is_left_out(statics: Statics, hangs_below: HangsBelow) -> BoolArray:
     return np.asarray(statics.hangs_below | (statics.verdict == Verdict.NO_FINITE_CABLE))
 
 
+def is_counted(statics: Statics, hangs_below: HangsBelow) -> BoolArray:
+    """Tell which poses (...) are solved and not left out."""
+    return statics.is_solved & ~is_left_out(statics, hangs_below)
+
+
 def size_worst(
     robot: Robot, workspace: Workspace, positions_m: FloatArray, material: Material
 ) -> tuple[FloatArray, Sizing]:

@@ -15,7 +15,7 @@ from designer.model.space import named_pose
 from designer.model.workspace import Workspace
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.task import LONG
-from designer.workspace.demand import is_left_out
+from designer.workspace.demand import is_counted
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +110,7 @@ def survey_hanging(robot: Robot, workspace: Workspace, cable: Cable | Cables) ->
     hanging_cables = HangingCables()
     for places in workspace.places():
         statics = solve_sagging(robot, Poses.at(places), cable)
-        counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+        counts = is_counted(statics, workspace.hangs_below)
         hanging_cables = look_at(hanging_cables, places, statics, counts, workspace.floor_m)
     return hanging_cables
 

@@ -20,13 +20,11 @@ from designer.workspace.clearance import (
     distances_among_cables_m,
     names_of,
 )
-from designer.workspace.demand import is_left_out
-from designer.workspace.refine import LIGHT, places_of, refine, refine_over_branches
+from designer.workspace.demand import is_counted, is_left_out
+from designer.workspace.refine import LIGHT, ONE_CLIMB, places_of, refine, refine_over_branches
 
 MOST_SAMPLES = 1000
 """Poses that are looked at before the search between them."""
-_A_CLIMB_EACH = replace(LIGHT, starts=1, finalists=1, revisited=0, tolerance=1e-2, rounds=0)
-"""For each pair of cables: some cross in so small a part of the space that no sample shows it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,7 +100,8 @@ def where_pairs_are_near(
 ) -> FloatArray:
     """Return where each pair of cables comes near (n, n_coordinates), by a short climb from places.
 
-    Starts for a search of the smallest clearance; none in a space in which every place is tried.
+    Starts for a search of the smallest clearance: some pairs cross in so small a part of the space
+    that no sample shows it. None in a space in which every place is tried.
     """
 
     def nearness(places: FloatArray) -> FloatArray:
@@ -114,7 +113,7 @@ def where_pairs_are_near(
     space = workspace.space
     if space.is_discrete or not len(cable_pairs(robot)):
         return np.empty((0, space.n_coordinates))
-    return places_of(refine(space, nearness, places, _A_CLIMB_EACH))
+    return places_of(refine(space, nearness, places, ONE_CLIMB))
 
 
 def survey(
@@ -157,7 +156,7 @@ def survey(
     near = np.concatenate([thinned, where_pairs_are_near(robot, workspace, cable, thinned)])
     return Interference(
         clearance_m=clearance_m,
-        samples=int((statics.is_solved & ~is_left_out(statics, workspace.hangs_below)).sum()),
+        samples=int(is_counted(statics, workspace.hangs_below).sum()),
         violating=int((cables.nearer(platform).distance_m < clearance_m).sum()),
         among_cables=nearest(clearance_among_cables, cables, near),
         to_platform=nearest(clearance_to_platform, platform, thinned),

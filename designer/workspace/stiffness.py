@@ -15,7 +15,7 @@ from designer.model.workspace import Workspace
 from designer.statics.inverse import solve_sagging
 from designer.statics.modes import knows_inertia, platform_frequencies_Hz
 from designer.statics.stiffness import largest_displacement_m_per_N
-from designer.workspace.demand import is_left_out
+from designer.workspace.demand import is_counted
 from designer.workspace.refine import LIGHT, refine_over_branches
 
 MOST_SAMPLES, FEW_SAMPLES = 2000, 500
@@ -124,7 +124,7 @@ def displacement_demand(
     Inf and -inf where the platform would not stay, both -inf where the pose does not count.
     """
     statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
-    counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+    counts = is_counted(statics, workspace.hangs_below)
     displacement = largest_displacement_m_per_N(statics)
     stays = counts & np.isfinite(displacement)
     softest = np.where(stays, displacement, np.where(counts, np.inf, -np.inf))
@@ -141,7 +141,7 @@ def _slowness(
 ) -> FloatArray:
     """Return the lowest frequency, negated (n,) [Hz]; -inf where the pose does not count."""
     statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
-    counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+    counts = is_counted(statics, workspace.hangs_below)
     density = cable.linear_density_kg_per_m
     frequencies = platform_frequencies_Hz(statics, robot.platform, density)
     return np.where(counts, -frequencies[:, 0], -np.inf)

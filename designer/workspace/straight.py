@@ -12,11 +12,9 @@ from designer.arrays import FloatArray, IntArray
 from designer.model.robot import Poses, Robot
 from designer.model.space import Space
 from designer.statics.distribution import tension_over_least
-from designer.workspace.refine import LIGHT, places_of, refine_each
+from designer.workspace.refine import ONE_CLIMB, places_of, refine_each
 
-_A_CLIMB_EACH = replace(
-    LIGHT, inside=512, starts=2, finalists=1, revisited=0, tolerance=1e-2, rounds=0
-)
+_TWO_CLIMBS = replace(ONE_CLIMB, inside=512, starts=2)
 """For each cable: what is found here is searched again with the cable's weight."""
 
 
@@ -37,5 +35,5 @@ def where_each_pulls_most(robots: Sequence[Robot], space: Space, places: FloatAr
         over = [tension_over_least(robots[k], Poses.at(part)) for k, part in parts]
         return np.nan_to_num(np.concatenate(over), nan=-np.inf)
 
-    worsts = refine_each(space, pull, [places] * len(robots), _A_CLIMB_EACH)
+    worsts = refine_each(space, pull, [places] * len(robots), _TWO_CLIMBS)
     return places_of(chain.from_iterable(worsts))
