@@ -142,12 +142,9 @@ def _random_places(workspace: Workspace, count: int, rng: np.random.Generator) -
     else:
         positions = rng.uniform(*region.bounds_m, (count, 3))
         positions = positions[region.contains(positions)]
-    if workspace.orientations.is_level:
-        return positions
     if workspace.orientations.range_rad is not None:
         return np.hstack([positions, rng.uniform(low[3:], high[3:], (len(positions), 3))])
-    turns = workspace.orientations.turns_rad
-    return np.hstack([positions, turns[rng.integers(len(turns), size=len(positions))]])
+    return workspace.space.places(positions)
 
 
 def _polish(

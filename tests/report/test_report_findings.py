@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from report_parts import said
@@ -9,6 +11,8 @@ from report_parts import said
 from designer.analysis.analyse import Analysis
 from designer.model.prism import Prism
 from designer.model.robot import Poses
+from designer.report.design.drawings import Drawings
+from designer.report.design.report import section
 from designer.selection.verify import verify
 from designer.statics.inverse import solve_sagging
 
@@ -141,3 +145,11 @@ def test_findings_and_assumptions_are_of_the_machine_as_built(solve, yard) -> No
         2 * built.study.material.density_kg_per_m3
     )
     assert "Linear_mass belongs to the configured family. It is not applied" in assumptions
+
+
+def test_sizes_that_fail_are_told_as_tried_until_then(analyses: dict[str, Analysis]) -> None:
+    words = said(section(Drawings(analyses["positive"]), "selection"))
+    assert re.search(r"the \d+ that hold in every sample, the others until they failed\.", words)
+    assert "breaking load, until it failed." in said(
+        section(Drawings(analyses["too_thin"]), "selection")
+    )
