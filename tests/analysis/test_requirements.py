@@ -105,7 +105,9 @@ def test_a_rope_that_may_be_bent_is_chosen_before_a_lighter_one(solve: Solve) ->
     assert chosen is not None and analysis.is_positive
     assert chosen.grade.id == "unirope-7x19-galvanised"
     assert chosen.grade.sheave_ratio is not None
-    assert of_id(analysis, "sheave_ratio", "all").capacity >= chosen.grade.sheave_ratio.minimum
+    sheave = of_id(analysis, "sheave_ratio", "all")
+    assert sheave.capacity >= chosen.grade.sheave_ratio.minimum
+    assert sheave.utilisation == pytest.approx(sheave.demand / sheave.capacity)
     assert analysis.selection is not None
     same = [
         c

@@ -49,6 +49,7 @@ def test_without_sheave_and_ending_the_safety_factor_is_all() -> None:
 def test_fibre_rope_loses_nothing_down_to_its_makers_least_diameter() -> None:
     grade = rope("a", [20.0], material="HMPE", sheave_ratio=10.0)  # at least 6
     assert Allowance(5.0, 1.0, 0.120).efficiency(grade, 0.020) == 1.0
+    assert Allowance(5.0, 1.0, 0.120, 0.9).efficiency(grade, 0.020) == 0.9  # kept by its sheaves
     assert math.isnan(Allowance(5.0, 1.0, 0.119).efficiency(grade, 0.020))
     unknown = rope("b", [20.0], material="HMPE")
     assert Allowance(5.0, 1.0, 0.120).efficiency(unknown, 0.020) == bending_efficiency(6.0)
