@@ -89,6 +89,9 @@ def test_first_failures_are_failures_and_no_nearer_than_the_reserve(found: Analy
         ways = [signs[way[0]] * np.eye(3)["xyz".index(way[1])] for way in failure.name.split()]
         assert failure.direction == pytest.approx(np.sum(ways, axis=0) / np.sqrt(len(ways)))
     assert min(f.distance_m for f in level) == pytest.approx(one.region.value, rel=0.05)
+    assert one.nearest is not None
+    known = [f.distance_m for f in one.failures if f.distance_m >= 0.0]
+    assert one.nearest.distance_m == min(known) < max(known)
     for failure in one.failures:
         if np.isfinite(failure.distance_m):
             beyond = failure.position_m + 1e-3 * failure.direction
