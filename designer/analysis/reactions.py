@@ -21,7 +21,7 @@ from designer.workspace.refine import ONE_CLIMB
 EXTREMES = ("largest", "horizontal", "up", "down")
 """Of which of its sizes a reaction is largest; the last two along the true vertical, so that an
 upward force that never is one has a negative size."""
-_FROM_THERE = replace(ONE_CLIMB, per_edge=0, per_face=0, inside=0, tolerance=1e-4)
+_CLIMB_AFTER_TURNING = replace(ONE_CLIMB, per_edge=0, per_face=0, inside=0, tolerance=1e-4)
 """Of the place after its loads were turned: there are a hundred extremes."""
 
 
@@ -74,7 +74,7 @@ def reactions_of(loads: Sequence[CaseLoads], progress: Advance) -> tuple[Reactio
 
     Where wind and inertia force are turned to the worst, the place follows by a short climb.
     """
-    evaluations = evaluate(loads, _criteria(loads), progress, again=_FROM_THERE)
+    evaluations = evaluate(loads, _criteria(loads), progress, again=_CLIMB_AFTER_TURNING)
     reactions = map(_reaction, evaluations)
     order = {case.case.name: number for number, case in enumerate(loads)}
     return tuple(

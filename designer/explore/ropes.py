@@ -160,9 +160,9 @@ def _quick_row(candidate: Candidate, is_best: bool, is_in_front: bool) -> RopeRo
     if is_best:
         standing, reason = "chosen", "best at the samples"
     elif np.isinf(verification.utilisation):
-        standing, reason = "not_held", "no equilibrium was found at some sample"
+        standing, reason = "not_held", "no equilibrium was found in some pose"
     elif not verification.holds:
-        standing, reason = "too_thin", "beyond its allowable tension at some sample"
+        standing, reason = "too_thin", "beyond its allowable tension in some pose"
     elif candidate.rejected_by is not None:
         standing, reason = "rejected", failure_words(candidate.rejected_by)
     elif is_in_front:

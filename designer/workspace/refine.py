@@ -95,7 +95,7 @@ LIGHT = Effort(
 )
 """For demands that take long to compute."""
 ONE_CLIMB = replace(LIGHT, starts=1, finalists=1, revisited=0, tolerance=1e-2, rounds=0)
-"""From the highest of what is known and explored: to what another search goes on from."""
+"""For each extreme one, from the highest place that is known or explored."""
 _FOLLOWING = replace(LIGHT, starts=4, finalists=4, from_landmarks=True, tolerance=1e-9)
 """For searches that know where others like them have ended."""
 _MANY, _SCOUTS = 12, 6

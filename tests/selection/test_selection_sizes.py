@@ -140,8 +140,9 @@ def test_pose_outside_the_hull_ends_every_cable(fast_robot) -> None:
 def test_worst_poses_are_from_all_over_and_the_search_ends_where_it_did(fast_robot) -> None:
     workspace = Workspace(LOW, samples=2000)
     for cable in cables()[3:6]:
-        (one,) = verify_sizes(fast_robot, workspace, [cable], gives_up=False)
-        assert len(np.unique(one.worst_places, axis=0)) == len(one.worst_places) > 100
+        (one,) = verify_sizes(fast_robot, workspace, [cable])
+        assert len(np.unique(one.worst_places, axis=0)) == len(one.worst_places)
+        assert len(one.worst_places) > 100 or one.utilisation > 1.0
         searched, alone = (
             refined_each(fast_robot, workspace, [cable], [one])[0],
             verify(fast_robot, workspace, cable),
