@@ -435,9 +435,7 @@ def as_built_by(study: Study, section_m: float | None = None, *, mounted: bool =
     product = built(has_rope_effects=False)
     robot = found.robot
     if study.workspace is not None:
-        of_family = study.workspace.family_sag_max
-        of_cables = of_family if study.selection is None else study.workspace.sag_max
-        robot = replace(robot, sag_max=of_cables, family_sag_max=of_family)
+        robot = replace(robot, sag_max=study.workspace.sag_max)
     return replace(found, robot=robot, section_m=section_m, change_of_product=product.change)
 
 

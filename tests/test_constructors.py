@@ -143,7 +143,7 @@ def test_arrays_of_another_length_do_not_enter_compiled_code(what) -> None:
         object.__setattr__(poses, "rotation", np.stack([np.eye(3)] * 2))
     with pytest.raises(ValueError, match=r"fit|shape"):
         situation = situation_of(ROBOT, poses, exits, force)
-        solve_batch(ROBOT, situation, kappa, np.ones(6), np.full(6, 2e3), None)
+        solve_batch(ROBOT, situation, kappa, np.ones(6), np.full(6, 2e3), None, sag_max=0.2)
 
 
 def test_lists_are_taken_and_what_is_right_stays_as_it_is() -> None:

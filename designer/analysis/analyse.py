@@ -254,7 +254,8 @@ class Analysis:
         if self.workspace is None or self.workspace.sagging is None:
             return None
         material = self.built.material(self.study.material)
-        return size_poses(self.built.robot, self.workspace.sagging.pose, material)
+        pose = self.workspace.sagging.pose
+        return size_poses(self.built.robot, pose, material, proves_thinnest=True)
 
     @cached_property
     def outside(self) -> Statics | None:

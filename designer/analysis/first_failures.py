@@ -136,7 +136,7 @@ def _first_distances_m(
 def _solved(loaded: Loaded, position_m: FloatArray, turn_rad: FloatArray) -> Statics:
     turns = np.broadcast_to(turn_rad, (len(position_m), len(turn_rad)))
     poses = Poses.at(np.hstack([position_m, turns]))
-    return solve_sagging(loaded.robot, poses, loaded.cable, seeks_better=False)
+    return solve_sagging(loaded.robot, poses, loaded.cable)
 
 
 def _fails(loaded: Loaded, position_m: FloatArray, turn_rad: FloatArray) -> BoolArray:

@@ -85,7 +85,7 @@ def analyse_pose(study: Study) -> PoseAnalysis:
     robot, material = built.robot, built.material(study.material, section_m)
     return PoseAnalysis(
         material=material,
-        sizing=size_poses(robot, study.pose, material),
+        sizing=size_poses(robot, study.pose, material, proves_thinnest=True),
         massless=solve_massless(robot, study.pose),
         loop=size_by_loop(robot, study.pose, material),
         limit_ratio=float(limit_ratio(robot, study.pose, material)),

@@ -22,7 +22,7 @@ from designer.model.space import named_position
 from designer.model.workspace import Workspace
 from designer.selection.cases import CaseResult
 from designer.workspace.demand import tension_demand
-from designer.workspace.refine import LIGHT, refine_over_branches
+from designer.workspace.refine import LIGHT, refine
 
 _FULL = 1e-5
 """Above 100 %: what is not worth another turn."""
@@ -177,5 +177,5 @@ def _searched(
     if loaded.keeps_lengths:
         return starts[0], value
     demand = partial(tension_demand, loaded, workspace.hangs_below)
-    (worst,) = refine_over_branches(workspace.space, demand, starts, LIGHT)
+    (worst,) = refine(workspace.space, demand, starts, LIGHT)
     return worst.place, value

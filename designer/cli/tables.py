@@ -193,10 +193,9 @@ def _summary_of_groups(choice: GroupChoice, selection: SelectionResult | None) -
 
 def print_pose(study: Study, pose: PoseAnalysis) -> None:
     """Print the sizing of the configured pose."""
-    from designer.model.verdict import Verdict
 
     statics = pose.sizing.statics
-    show(f"{study.name}: {Verdict(int(statics.verdict)).sentence}", markup=False)
+    show(f"{study.name}: {statics.sentence}", markup=False)
     _print_rows("Sizing", _sizing_rows(pose), "", "diameter [mm]", "largest tension [N]")
     if pose.loop.iterates and not pose.loop.has_converged:
         show(f"loop: {pose.loop.outcome}")

@@ -42,7 +42,7 @@ def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None
         length, tension, span = solve_taut(machine.robot, poses, machine.cables, force)
         return Readings(length - straightened_m(machine, tension, span), tension)
     if machine.robot.is_square:  # hangs in the way that it was tightened to, better ones or not
-        statics = solve_sagging(machine.robot, poses, machine.cables, force, seeks_better=False)
+        statics = solve_sagging(machine.robot, poses, machine.cables, force)
     else:
         statics = solve_underactuated(machine.robot, poses, machine.cables, force)
     return with_stiff_ends(machine, statics, true_readings(statics))

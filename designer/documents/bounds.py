@@ -33,7 +33,7 @@ BOUNDS: Mapping[str, Bound] = {
     "position": Bound(units.LENGTH, -1e7, 1e7, "as far as survey coordinates reach"),
     "distance": Bound(units.LENGTH, 0.0, 2e4, "no cable is longer than some kilometres"),
     "clearance": Bound(units.LENGTH, 1e-6, 1e3, "finer than any machine, or larger"),
-    "sag": Bound(units.RELATIVE, 1e-3, 10.0, "from a taut wire to a loop; 'none' lets cables hang"),
+    "sag": Bound(units.RELATIVE, 1e-3, 0.5, "what hangs deeper is not taut"),
     "length noise": Bound(units.LENGTH, 1e-9, 1e3, "no winch measures finer, or so badly"),
     "tension noise": Bound(units.FORCE, 1e-6, 1e8, "no load cell measures finer, or so badly"),
     "angle noise": Bound(units.ANGLE, 1e-9, 1.0, "no inclinometer measures finer, or so badly"),

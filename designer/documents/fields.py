@@ -24,7 +24,6 @@ from designer.documents.document import printable
 from designer.documents.plain import why_unreadable
 
 LONGEST_TEXT = 1000
-NONE = "none"
 """The word that lifts a limit which a study has by default."""
 _QUANTITY = r"^\s*[-+−]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d{1,3})?\s*(?:[^\s\d.].*)?$"
 """What a quantity looks like as a text; an editor does not know which units there are."""
@@ -115,20 +114,6 @@ class QuantityField(Reader):
         if self.at_most is not None and value > self.at_most:
             return f"at most {units.format_SI(self.at_most, self.dimension)}{why}"
         return ""
-
-
-@dataclass(frozen=True)
-class LiftableQuantity(QuantityField):
-    """Annotation of such a float that the study has by default; ``none`` lifts it."""
-
-    def read(self, given: object) -> float | None:  # type: ignore[override]
-        """Return the SI value, None for the word, or refuse it."""
-        return None if given == NONE else super().read(given)
-
-    def json_schema(self) -> JsonSchema:
-        """Return a number within the limits, a text with a unit, or the word."""
-        schema = super().json_schema()
-        return schema | {"anyOf": [{"const": NONE}, *schema["anyOf"]]}
 
 
 @dataclass(frozen=True)
@@ -334,7 +319,7 @@ FreeMapping = Annotated[dict[str, Any], BeforeValidator(mapping)]
 Length = Annotated[float, bounded("position")]
 Distance = Annotated[float, bounded("distance")]
 Clearance = Annotated[float, bounded("clearance")]
-Sag = Annotated[float | None, bounded("sag", LiftableQuantity)]
+Sag = Annotated[float, bounded("sag")]
 LengthNoise = Annotated[float, bounded("length noise")]
 TensionNoise = Annotated[float, bounded("tension noise")]
 AngleNoise = Annotated[float, bounded("angle noise")]

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from designer.arrays import FloatArray, VerdictArray
+from designer.arrays import BoolArray, FloatArray, VerdictArray
 from designer.kernel.compiling import element
 from designer.kernel.table import X2, L, P, V
 from designer.model.verdict import Verdict
@@ -38,11 +38,22 @@ class Answers(NamedTuple):
         Last axes as above.
     verdict : array (n_poses,)
         One `Verdict` a pose.
+    wrench : array (n_poses, degrees of freedom)
+        Of a pose that one wrench proves to be impossible, that wrench, of unit length, moments over
+        the reach of the attachments; else NaN.
+    leaving : array (n_poses, n_cables)
+        Of an open pose whose cables run over pulleys, the angles below the horizontal at which they
+        leave where an equilibrium may be near [rad]; else NaN.
+    is_best : array (n_poses,)
+        Whether it is proved that no thinner taut cable holds the pose, to five parts in a million.
     """
 
     cables: FloatArray
     poses: FloatArray
     verdict: VerdictArray
+    wrench: FloatArray
+    leaving: FloatArray
+    is_best: BoolArray
 
 
 @element

@@ -6,22 +6,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import FloatArray, VerdictArray, require_shape
+from designer.arrays import BoolArray, FloatArray, VerdictArray, require_shape
 from designer.kernel import answer
-from designer.kernel.branches import rate_range
 from designer.kernel.calling import CableFigures, Situation, plain, share_out
 from designer.kernel.cone import refuse_range
 from designer.kernel.least_pull import least_pulls
 from designer.kernel.redundant import solve_massless_range, solve_redundant_range
-from designer.kernel.search import prove_range, search_range
-from designer.kernel.square import solve_range
+from designer.kernel.square import refuse_points_range, solve_range
 from designer.kernel.table import LANES
 from designer.model.robot import Robot
 
 _SHARE = 128 * LANES
 """Poses that one thread takes at a time."""
-_SLOW_SHARE, _SEARCH_SHARE = 32, 2
-"""The same where a pose takes a hundred times as long, and where branches are searched."""
+_SLOW_SHARE = 32
+"""The same where a pose takes a hundred times as long."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,9 +42,14 @@ class Solution:
         Largest tension over strength; NaN only where no state was found.
     massless_tension_N : array (n_poses,)
         Largest tension of straight, weightless cables [N]; NaN outside their hull.
-    potential : array (n_poses,)
-        Estimate of what other branches could gain, relative, by `designer.kernel.branches`; zero
-        where it was not asked for.
+    wrench : array (n_poses, degrees of freedom)
+        Of a pose that one wrench proves to be impossible, that wrench, of unit length, moments over
+        the reach of the attachments; else NaN.
+    leaving_rad : array (n_poses, n_cables)
+        Of an open pose whose cables run over pulleys, the angles below the horizontal at which they
+        leave where an equilibrium may be near [rad]; else NaN.
+    is_best : array (n_poses,)
+        Whether it is proved that no thinner taut cable holds the pose.
     """
 
     verdict: VerdictArray
@@ -58,7 +61,9 @@ class Solution:
     equilibrium_residual_N: FloatArray
     load_factor: FloatArray
     massless_tension_N: FloatArray
-    potential: FloatArray
+    wrench: FloatArray
+    leaving_rad: FloatArray
+    is_best: BoolArray
 
 
 def solve_batch(
@@ -69,10 +74,9 @@ def solve_batch(
     strength_m: FloatArray,
     inverse_weight_m_per_N: float | FloatArray | None,
     *,
-    sag_max: float | None = None,
-    is_thorough: bool = False,
-    is_open: bool = False,
-    rates_branches: bool = True,
+    sag_max: float,
+    pulleys_m: FloatArray | None = None,
+    proves_best: bool = False,
 ) -> Solution:
     """Solve the statics of poses (n_poses,), or size the cables if no weight is given.
 
@@ -85,14 +89,13 @@ def solve_batch(
     inverse_weight_m_per_N : float, array (n_poses,) or None
         1 / w, zero for the infinite section; None sizes each pose for the lightest cable that the
         strength allows.
-    sag_max : float or None
-        Largest sag over chord; of a robot that leaves no choice it is not regarded.
-    is_thorough : bool
-        Whether to look for other branches as well, which takes a thousand times as long.
-    is_open : bool
-        Whether it is known that without other branches none of the poses has an answer.
-    rates_branches : bool
-        Whether to estimate what they could gain, which takes twice as long as to solve the poses.
+    sag_max : float
+        Largest sag over chord. A robot that leaves no choice may exceed it, but what is proved of
+        its poses without an answer is that no cables within it hold them.
+    pulleys_m : array (n_cables, 3), optional
+        Exit points above the edges of the pulleys, in the frame of the situation [m].
+    proves_best : bool
+        Whether to prove of a robot with cables to spare that no thinner taut cable holds a pose.
 
     Raises
     ------
@@ -108,35 +111,28 @@ def solve_batch(
         ("strength_m", strength_m),
     ):
         require_shape(name, values, *([count] if values.ndim == 2 else []), n)
-    sizing = inverse_weight_m_per_N is None
     inverse_weight = np.array(-1.0 if inverse_weight_m_per_N is None else inverse_weight_m_per_N)
     least_N = robot.tension_min_N if robot.is_redundant else 0.0
     rows = map(np.atleast_2d, (kappa_per_m, relative_weights, strength_m))
     kappa, weights, strength = map(plain, np.broadcast_arrays(*rows))
-    pulls = least_pulls(sag_max if robot.is_redundant else None)
-    figures = CableFigures(kappa, weights, strength, least_N, pulls)
+    pulleys = plain(np.empty((0, 3)) if pulleys_m is None else pulleys_m)
+    radius = 0.0 if pulleys_m is None else robot.pulley_radius_m
+    figures = CableFigures(kappa, weights, strength, least_N, least_pulls(sag_max), pulleys, radius)
     out = answer.Answers(
-        np.empty((count, n, 3)), np.empty((count, 5)), np.empty(count, dtype=np.int8)
+        np.empty((count, n, 3)),
+        np.empty((count, 5)),
+        np.empty(count, dtype=np.int8),
+        np.full((count, robot.degrees_of_freedom), np.nan),
+        np.full((count, n), np.nan),
+        np.zeros(count, dtype=np.bool_),
     )
     asked = situation, figures, plain(inverse_weight.reshape(-1)), out
-    if is_open:
-        out.cables[:], out.poses[:], out.verdict[:] = np.nan, np.nan, answer.NOT_CONVERGED
-    elif robot.is_redundant:
-        share_out(solve_redundant_range, count, _SLOW_SHARE, *asked)
+    if robot.is_redundant:
+        *given, out = asked
+        share_out(solve_redundant_range, count, _SLOW_SHARE, *given, proves_best, out)
     else:
         share_out(solve_range, count, _SHARE, *asked)
-    potential = np.zeros(count)
-    if (inverse_weight != 0.0).all():  # at infinite section nothing is chosen
-        if is_thorough:
-            if robot.has_one_branch and sizing:
-                share_out(prove_range, count, _SHARE, situation, figures, out)
-            # Where all is proved, the search need not even be compiled.
-            if (out.verdict != answer.NO_FINITE_CABLE).any():
-                share_out(search_range, count, _SEARCH_SHARE, *asked)
-        is_any_solved = (out.verdict == answer.SOLVED).any()
-        if rates_branches and is_any_solved and not robot.has_one_branch:
-            rated = situation, figures, sizing, out, potential
-            share_out(rate_range, count, _SLOW_SHARE, *rated)
+        _decide_unsolved(robot, *asked)
     if np.any(relative_weights != 1.0):  # the kernel's forces are those of cables of weight w
         out.cables[..., [answer.FORCE_X, answer.FORCE_Z]] *= relative_weights[..., None]
     return Solution(
@@ -149,8 +145,41 @@ def solve_batch(
         equilibrium_residual_N=out.poses[:, answer.BALANCE_ERROR],
         load_factor=out.poses[:, answer.LOAD_FACTOR],
         massless_tension_N=out.poses[:, answer.MASSLESS_TENSION],
-        potential=potential,
+        wrench=out.wrench,
+        leaving_rad=out.leaving,
+        is_best=out.is_best,
     )
+
+
+def _decide_unsolved(
+    robot: Robot,
+    situation: Situation,
+    figures: CableFigures,
+    inverse_weight: FloatArray,
+    out: answer.Answers,
+) -> None:
+    """Decide the poses of a robot without spare cables that Newton left without an answer."""
+    if (inverse_weight == 0.0).any():  # at infinite section nothing holds a load
+        return
+    if robot.has_one_branch and inverse_weight[0] < 0.0:
+        share_out(refuse_points_range, len(out.verdict), _SHARE, situation, figures, out)
+    at = np.flatnonzero(out.verdict == answer.NOT_CONVERGED)
+    if len(at) == 0:  # and the solver need not even be compiled
+        return
+
+    def of_part(values: FloatArray) -> FloatArray:
+        return plain(values[at]) if len(values) > 1 else values
+
+    figures = figures._replace(
+        kappa=of_part(figures.kappa),
+        weights=of_part(figures.weights),
+        strength=of_part(figures.strength),
+    )
+    part = answer.Answers(*(values[at] for values in out))  # type: ignore[arg-type]
+    given = situation.part(at), figures, of_part(inverse_weight), False, part
+    share_out(solve_redundant_range, len(at), _SLOW_SHARE, *given)
+    out.cables[at], out.poses[at], out.verdict[at] = part.cables, part.poses, part.verdict
+    out.wrench[at], out.leaving[at] = part.wrench, part.leaving
 
 
 def solve_massless_batch(

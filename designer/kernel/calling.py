@@ -79,6 +79,11 @@ class CableFigures(NamedTuple):
         Least tension that is asked for anywhere in a cable [N].
     least_pulls : array (n_nodes, 2)
         Least pulls for the sag that is allowed, see `designer.kernel.least_pull`; no rows for any.
+    pulleys : array (n_cables, 3)
+        Exit points above the edges of the pulleys, in the frame of the situation; no rows without
+        pulleys, or where cables bow out of their planes [m].
+    pulley_radius : float
+        Zero where there are no such rows [m].
     """
 
     kappa: FloatArray
@@ -86,6 +91,8 @@ class CableFigures(NamedTuple):
     strength: FloatArray
     least_tension: float
     least_pulls: FloatArray = ANY_SAG
+    pulleys: FloatArray = frozen_array(np.empty((0, 3)))
+    pulley_radius: float = 0.0
 
 
 class Meets(NamedTuple):

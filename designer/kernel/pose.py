@@ -58,19 +58,20 @@ from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
 # sag that is allowed.
 LEAST, UNIT, FLOOR = range(LANE_ROWS, LANE_ROWS + 3)
 # Second slopes of pull and top tension; least tension anywhere in the cable over its weight, with
-# its slopes, where one is asked for; 1 where that sets the smallest pull, 0 where the sag does; 1
-# for a cable left to hang, 0 for one that is pulled.
-V_PP, T_PP, LOWEST, LOWEST_P, LOWEST_PP, BY_LEAST, HANGS = range(FLOOR + 1, FLOOR + 8)
+# its slopes, where one is asked for; 1 where that sets the smallest pull, 0 where the sag does.
+V_PP, T_PP, LOWEST, LOWEST_P, LOWEST_PP, BY_LEAST = range(FLOOR + 1, FLOOR + 7)
 # Of the interior point: slack below the strength and above the smallest pull, their multipliers,
 # the inverse of the diagonal of the Hessian, right-hand side, coupling with s; then the steps of
 # the pull, of both slacks and of both multipliers.
-ROOM, HEIGHT, MU_ROOM, MU_HEIGHT, FREEDOM, RHS, COUPLING = range(HANGS + 1, HANGS + 8)
+ROOM, HEIGHT, MU_ROOM, MU_HEIGHT, FREEDOM, RHS, COUPLING = range(BY_LEAST + 1, BY_LEAST + 8)
 STEP, D_ROOM, D_HEIGHT, D_MU_ROOM, D_MU_HEIGHT = range(COUPLING + 1, COUPLING + 6)
 # Of a linear programme: scaled pull at the strength, its change with s, lift at no pull.
 TOP, TOP_S, UP = range(D_MU_HEIGHT + 1, D_MU_HEIGHT + 4)
 # Scaled wrench per unit of scaled pull, six rows.
 WRENCH = UP + 1
-_ROWS = WRENCH + 6
+# Distance and drop from the exit point, above the pulley's edge, to the attachment.
+PULLEY_X, PULLEY_D = WRENCH + 6, WRENCH + 7
+_ROWS = WRENCH + 8
 
 OPTIMAL_WITHIN = 1e-6
 """Largest last step, or residual of the optimality conditions, of an answer."""
@@ -107,6 +108,8 @@ class Pose(NamedTuple):
         [m].
     least_pulls : array (n_nodes, 2)
         See `designer.kernel.least_pull`.
+    radius : float
+        Of the pulleys, zero without [m].
     block : array (rows of a block × its cables,)
         Some of the table's rows for a few cables; see `bend`.
     """
@@ -117,6 +120,7 @@ class Pose(NamedTuple):
     rest: FloatArray
     scale: FloatArray
     least_pulls: FloatArray
+    radius: float
     block: FloatArray
 
 
@@ -137,9 +141,16 @@ class Ask(NamedTuple):
 def new_pose(situation: Situation, figures: CableFigures) -> Pose:
     """Return the arrays of a pose."""
     cables = np.zeros((_ROWS, situation.attachments.shape[0]))
-    least_pulls = figures.least_pulls
-    block = np.zeros(_BLOCK_ROWS * _BLOCK)
-    return Pose(cables, situation.rows, np.zeros(6), np.zeros(6), np.ones(3), least_pulls, block)
+    return Pose(
+        cables,
+        situation.rows,
+        np.zeros(6),
+        np.zeros(6),
+        np.ones(3),
+        figures.least_pulls,
+        figures.pulley_radius,
+        np.zeros(_BLOCK_ROWS * _BLOCK),
+    )
 
 
 @inner
@@ -147,7 +158,7 @@ def place(pose: Pose, situation: Situation, figures: CableFigures, at: int) -> N
     """Fill cables, geometry and load."""
     c, load, scale = pose.cables, pose.load, pose.scale
     reach, size = 0.0, 1e-300
-    c[HANGS], c[FLOOR] = 0.0, 0.0
+    c[FLOOR] = 0.0
     scale[FORCE] = 0.0
     for i in range(c.shape[1]):
         put_cable(c, i, figures, at, i)
@@ -155,6 +166,8 @@ def place(pose: Pose, situation: Situation, figures: CableFigures, at: int) -> N
         c[LEAST, i] = figures.least_tension / c[SHARE, i]
         scale[FORCE] = max(scale[FORCE], c[SHARE, i] * c[STRENGTH, i])
         c[UNIT, i] = c[STRENGTH, i] / c[CHORD, i]
+        if pose.radius > 0.0:
+            _place_pulley(pose, situation, figures, at, i)
         reach = max(reach, c[LEVER, i])
     scale[REACH] = reach = reach if reach > 0.0 else 1.0
     applied = load_of(situation, at)
@@ -170,6 +183,16 @@ def place(pose: Pose, situation: Situation, figures: CableFigures, at: int) -> N
     for k in range(6):
         load[k] /= size
     scale[SIZE] = size
+
+
+@inner
+def _place_pulley(pose: Pose, situation: Situation, figures: CableFigures, at: int, i: int) -> None:
+    """Fill distance and drop from an exit point that has a pulley."""
+    c, A = pose.cables, figures.pulleys[i]
+    leaves = situation.exit_points[at if situation.exit_points.shape[0] > 1 else 0, i]
+    x, y = A[0] - leaves[0] + c[LEVEL, i], A[1] - leaves[1] + c[LEVEL + 1, i]
+    c[PULLEY_X, i] = np.sqrt(x * x + y * y)
+    c[PULLEY_D, i] = A[2] - leaves[2] + c[D, i]
 
 
 @inner
@@ -214,27 +237,28 @@ def linearise(pose: Pose) -> None:
     for i in range(c.shape[1]):
         condense(c, i)
         if c[LEAST, i] > 0.0:
-            c[LOWEST, i], c[LOWEST_P, i] = _lowest_tension(
-                c, i, c[P, i], c[L, i] + c[L_0, i], c[L_P, i], c[V, i], c[V_P, i]
+            length = c[L, i] + c[L_0, i]
+            c[LOWEST, i], c[LOWEST_P, i] = lowest_tension(
+                c[P, i], length, c[L_P, i], c[V, i], c[V_P, i], c[X2, i], c[D, i]
             )
 
 
 @element
-def _lowest_tension(
-    c: FloatArray, i: int, p: float, length: float, length_p: float, v: float, v_p: float
+def lowest_tension(
+    p: float, length: float, length_p: float, v: float, v_p: float, X2: float, D: float
 ) -> tuple[float, float]:
     """Return the least tension anywhere in a cable over its weight, and its slope in the pull.
 
     Where the cable hangs below both of its ends that is the horizontal force, else the tension at
     its lower end. It rises with the pull, ever faster: its tangents never promise too much.
     """
-    up, up_p = (v, v_p) if c[D, i] >= 0.0 else (-length - v, -length_p - v_p)
+    up, up_p = (v, v_p) if D >= 0.0 else (-length - v, -length_p - v_p)
     if up < 0.0:
         up, up_p = 0.0, 0.0
-    tension = np.sqrt(p * p * c[X2, i] + up * up)
+    tension = np.sqrt(p * p * X2 + up * up)
     if not tension > 0.0:
-        return 0.0, c[CHORD, i]
-    return tension, (p * c[X2, i] + up * up_p) / tension
+        return 0.0, np.sqrt(X2 + D * D)
+    return tension, (p * X2 + up * up_p) / tension
 
 
 @element
@@ -272,12 +296,13 @@ def bend(pose: Pose) -> None:
                 c[_BENT[k], i] = block[(len(_GIVEN) + k) * _BLOCK + j]
             if c[LEAST, i] > 0.0:
                 p, length_p, v, v_p = c[P, i], c[L_P, i], c[V, i], c[V_P, i]
-                lowest = _lowest_tension(c, i, p, c[L, i] + c[L_0, i], length_p, v, v_p)
+                ends = c[X2, i], c[D, i]
+                lowest = lowest_tension(p, c[L, i] + c[L_0, i], length_p, v, v_p, *ends)
                 c[LOWEST, i], c[LOWEST_P, i] = lowest
                 step, at = _ALONG * p, _AHEAD * _BLOCK + j
                 length_p, v, v_p = block[at], block[at + _BLOCK], block[at + 2 * _BLOCK]
                 length = c[L, i] + step * c[L_P, i]
-                _, slope = _lowest_tension(c, i, p + step, length, length_p, v, v_p)
+                _, slope = lowest_tension(p + step, length, length_p, v, v_p, *ends)
                 c[LOWEST_PP, i] = (slope - c[LOWEST_P, i]) / step
 
 
@@ -367,7 +392,7 @@ def _measure(pose: Pose, c: float) -> tuple[float, float, float, float]:
         # Sums instead of maxima where NaN has to get through.
         closure = max(closure, abs(F / F_l)) + 0.0 * F
         apart = max(apart, abs(F / F_l) / length) + 0.0 * F
-        lowest, _ = _lowest_tension(cables, i, p, length, 0.0, v, 0.0)
+        lowest, _ = lowest_tension(p, length, 0.0, v, 0.0, cables[X2, i], cables[D, i])
         is_held = (
             p * AT_LIMIT >= cables[FLOOR, i]
             and t > 0.0
@@ -396,16 +421,24 @@ def store(
     """
     cables, scale = pose.cables, pose.scale
     closure, apart, error, overload = _measure(pose, c)
-    heaviest, massless = abs(c) * scale[SIZE], 0.0
+    heaviest = abs(c) * scale[SIZE]
     for i in range(cables.shape[1]):
         heaviest = max(heaviest, cables[SHARE, i] * cables[T, i])
-        massless = max(massless, cables[STRAIGHT, i])
     residual = apart + error / heaviest if gap <= OPTIMAL_WITHIN else np.inf
     verdict = judge(residual, c, overload, sizing)
     w = write_pose(out, at, verdict, c, closure, error)
     for i in range(cables.shape[1]):
         write_cable(out, at, i, cables, i, w)
     out.poses[at, LOAD_FACTOR] = overload if residual <= TOLERANCE else np.nan
+    write_massless(out, at, pose, straight_c)
+    return verdict
+
+
+@element
+def write_massless(out: Answers, at: int, pose: Pose, straight_c: float) -> None:
+    """Write the largest tension of straight, weightless cables."""
+    massless, scale = 0.0, pose.scale
+    for i in range(pose.cables.shape[1]):
+        massless = max(massless, pose.cables[STRAIGHT, i])
     to_N = scale[SIZE] / (scale[FORCE] * straight_c) if straight_c > NOTHING else np.nan
     out.poses[at, MASSLESS_TENSION] = massless * to_N
-    return verdict

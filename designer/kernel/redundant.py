@@ -10,7 +10,9 @@ unknowns are the pulls p, and the platform's balance is linear in the inverse we
 with top tension t and least tension τ anywhere in the cable, and with c as large, or with c given
 and f as small, as can be. Straight cables make this a linear programme, and so does each Newton
 step for sagging ones; where enough cables are at a limit, the steps end on a vertex and converge
-quadratically. Where a cable is best left hanging between its limits, an interior point takes over.
+quadratically. Where a cable is best left between its limits, an interior point takes over; where
+neither ends in an equilibrium, `designer.kernel.feasible` proves that there is none, or tells where
+else to start.
 
 What is called for every pose is compiled in place (`element`): to hand so many arrays to a function
 takes longer than most of these functions do.
@@ -21,9 +23,29 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray, VerdictArray
-from designer.kernel.answer import NOT_CONVERGED, OUTSIDE_HULL, RANK_DEFICIENT, SOLVED, Answers
+from designer.kernel.answer import (
+    NO_FINITE_CABLE,
+    NOT_CONVERGED,
+    OUTSIDE_HULL,
+    RANK_DEFICIENT,
+    SOLVED,
+    WEIGHT,
+    Answers,
+)
 from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import element, inner, kernel
+from designer.kernel.feasible import (
+    FAILED,
+    MOST_PARTS,
+    REFUSED,
+    UNDECIDED,
+    Parts,
+    bound_part,
+    cut_part,
+    leaving_slope,
+    new_parts,
+    set_ranges,
+)
 from designer.kernel.interior import (
     PATIENCE,
     START_OF_STRAIGHT,
@@ -32,12 +54,10 @@ from designer.kernel.interior import (
     new_scratch,
     pull_straight,
 )
-from designer.kernel.linear import solve_small
+from designer.kernel.linear import copy, solve_small
 from designer.kernel.pose import (
     FLOOR,
     FORCE,
-    HANGS,
-    LEAST,
     NOTHING,
     OPTIMAL_WITHIN,
     REACH,
@@ -60,6 +80,7 @@ from designer.kernel.pose import (
     settled_length,
     smallest_pull,
     store,
+    write_massless,
     write_wrenches,
 )
 from designer.kernel.simplex import (
@@ -73,7 +94,6 @@ from designer.kernel.simplex import (
 )
 from designer.kernel.table import (
     CHORD,
-    KAPPA,
     L_0,
     L_P,
     LIFT,
@@ -82,14 +102,12 @@ from designer.kernel.table import (
     STRENGTH,
     T_P,
     V_P,
-    X2,
     D,
     L,
     P,
     T,
     V,
 )
-from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
 
 KEPT_PULLS = (0.5, 0.9)
 """Share of its pull that a cable keeps in a step of the interior point; then more careful."""
@@ -97,12 +115,13 @@ _MOST_STEPS = 8
 _SMALL_STEP = 1e-6
 _LEAST_SLOPE = 0.3
 """Of the top tension in the pull, over the chord: a cable of less is far from its strength."""
-# Newton for the pull of a hanging cable: turns, when it is settled (the error left is about the
-# square), relative step of the difference for its slope, largest turn of the pull's logarithm.
-_MOST_TURNS = 12
-_SETTLED = 1e-4
-_ALONG = 1e-5
-_LARGEST_TURN = 1.5
+_NEARER = 0.1
+"""Of its distance from the curves: what a point has to be nearer by to be the next start."""
+_ON_CURVES = 1e-11
+"""Distance from the curves, over the forces, at which a point is an equilibrium."""
+_LIGHTER = 1.0 + 1e-5
+"""Of the inverse weight: what a better answer has at least; half of it in diameter."""
+_MOST_BETTER = 8
 
 
 @kernel
@@ -112,37 +131,173 @@ def solve_redundant_range(
     situation: Situation,
     figures: CableFigures,
     inverse_weight: FloatArray,
+    proves_best: bool,
     out: Answers,
 ) -> None:
-    """Solve the poses from `start` to `stop`: by linear programmes, else by the interior point."""
+    """Solve the poses from `start` to `stop`, or prove of them that no taut cables hold them.
+
+    Of cables that are sized it may be proved as well that no thinner ones do.
+    """
     m, n = situation.rows.size, situation.attachments.shape[0]
     pose = new_pose(situation, figures)
     lp = new_programme(m, n)
     scratch = new_scratch(m, n)
-    sizing = inverse_weight[0] < 0.0
+    parts, bodies = new_parts(m, n)
     for at in range(start, stop):
         place(pose, situation, figures, at)
+        out.wrench[at] = np.nan
+        out.leaving[at] = np.nan
         straight_c, spans = massless(pose, lp)
-        if not spans:
+        limit_sag(pose)
+        ask = asked(pose, inverse_weight[at if inverse_weight.size > 1 else 0])
+        verdict = NOT_CONVERGED
+        if spans:
+            s, gap = _walk(pose, lp, ask)
+            if gap <= OPTIMAL_WITHIN:
+                verdict = _store(out, at, pose, ask, s, gap, straight_c)
+        if verdict != SOLVED:
+            verdict = _decide(pose, parts, bodies, ask, scratch, straight_c, out, at)
+        if verdict != SOLVED:
             out.cables[at] = np.nan
             out.poses[at] = np.nan
-            out.verdict[at] = NOT_CONVERGED
-            continue
-        limit_sag(pose)
-        to_scaled = pose.scale[SIZE] / pose.scale[FORCE]
-        ask = asked(pose, inverse_weight[at if inverse_weight.size > 1 else 0])
-        s, gap = _walk(pose, lp, ask, scratch)
-        verdict = NOT_CONVERGED
-        if gap <= OPTIMAL_WITHIN:
-            c = (ask.c_0 + s * ask.c_s) / to_scaled
-            verdict = store(out, at, pose, c, gap, straight_c, sizing)
-        for keep in KEPT_PULLS:
-            if verdict != SOLVED:
-                s = START_OF_STRAIGHT * straight_c if sizing else -1.0
+            write_massless(out, at, pose, straight_c)
+        out.is_best[at] = False
+        if verdict == SOLVED and proves_best and ask.c_s > 0.0:
+            out.is_best[at] = _is_best(pose, parts, bodies, scratch, straight_c, out, at)
+        out.verdict[at] = verdict
+
+
+@inner
+def _store(
+    out: Answers, at: int, pose: Pose, ask: Ask, s: float, gap: float, straight_c: float
+) -> int:
+    c = (ask.c_0 + s * ask.c_s) / (pose.scale[SIZE] / pose.scale[FORCE])
+    return store(out, at, pose, c, gap, straight_c, ask.c_s > 0.0)
+
+
+@inner
+def _refusal(pose: Pose, parts: Parts, bodies: Programme, ask: Ask, out: Answers, at: int) -> int:
+    """Tell of a pose that cables of their strength do not hold whether stronger ones would not."""
+    if ask.c_s == 0.0:
+        return OUTSIDE_HULL
+    if set_ranges(pose, parts, ask, True) != UNDECIDED:
+        return NO_FINITE_CABLE
+    if bound_part(pose, parts, 0, bodies, ask)[0] != REFUSED:
+        return NO_FINITE_CABLE
+    copy(parts.wrench, out.wrench[at])
+    return OUTSIDE_HULL
+
+
+@inner
+def _decide(
+    pose: Pose,
+    parts: Parts,
+    bodies: Programme,
+    ask: Ask,
+    scratch: Scratch,
+    straight_c: float,
+    out: Answers,
+    at: int,
+) -> int:
+    """Prove that no taut cables hold a pose, or start the interior point where they might."""
+    status, nearest = set_ranges(pose, parts, ask, False), np.inf
+    if status == REFUSED:
+        return _refusal(pose, parts, bodies, ask, out, at)
+    count = 0 if status == FAILED else 1
+    for turn in range(MOST_PARTS):
+        apart = np.inf
+        if count > 0:
+            status, apart = bound_part(pose, parts, count - 1, bodies, ask)
+            if status == REFUSED:
+                count -= 1
+                if turn == 0:
+                    copy(parts.wrench, out.wrench[at])
+                if count == 0:
+                    return _refusal(pose, parts, bodies, ask, out, at)
+                continue
+        if turn == 0 and straight_c > NOTHING:
+            for keep in KEPT_PULLS:
+                s = START_OF_STRAIGHT * straight_c if ask.c_s > 0.0 else -1.0
                 pull_straight(pose, ask, s)
                 s, gap = climb(pose, ask, s, keep, PATIENCE, scratch)
-                c = (ask.c_0 + s * ask.c_s) / to_scaled
-                verdict = store(out, at, pose, c, gap, straight_c, sizing)
+                if _store(out, at, pose, ask, s, gap, straight_c) == SOLVED:
+                    return SOLVED
+        if count == 0:
+            break
+        if apart < max(_NEARER * nearest, _ON_CURVES) or turn & (turn - 1) == 0:
+            nearest = min(apart, nearest)
+            s, gap = _climb_from_point(pose, parts, ask, apart, scratch)
+            for i in range(pose.cables.shape[1] if pose.radius > 0.0 else 0):
+                out.leaving[at, i] = leaving_slope(pose, i, parts.pulls[0, i])
+            if _store(out, at, pose, ask, s, gap, straight_c) == SOLVED:
+                return SOLVED
+        if not cut_part(pose, parts, count - 1, ask):
+            break
+        count += 1
+    return NOT_CONVERGED
+
+
+@inner
+def _climb_from_point(
+    pose: Pose, parts: Parts, ask: Ask, apart: float, scratch: Scratch
+) -> tuple[float, float]:
+    """Start the interior point from a point of the bodies; where that is on the curves, take it."""
+    c, s = pose.cables, -1.0
+    for i in range(c.shape[1]):
+        c[P, i] = parts.pulls[0, i]
+        s = min(s, -c[P, i] / c[UNIT, i])
+    s = parts.borne[0] if ask.c_s > 0.0 else s
+    if apart > _ON_CURVES:
+        return climb(pose, ask, s, KEPT_PULLS[0], PATIENCE, scratch)
+    for i in range(c.shape[1]):
+        c[L, i] = settled_length(c, i, c[P, i])
+    return s, 0.0
+
+
+@inner
+def _is_best(
+    pose: Pose,
+    parts: Parts,
+    bodies: Programme,
+    scratch: Scratch,
+    straight_c: float,
+    out: Answers,
+    at: int,
+) -> bool:
+    """Prove that no taut cables of a lighter section hold a pose, or answer with those."""
+    ask, scale = Ask(0.0, 1.0, 1.0, 0.0), pose.scale
+    of_pose, of_cables = out.poses[at].copy(), out.cables[at].copy()
+    for _ in range(_MOST_BETTER):
+        best = scale[SIZE] / (scale[FORCE] * out.poses[at, WEIGHT])
+        lighter = Ask(best * _LIGHTER, 1.0, 1.0, 0.0)
+        status = set_ranges(pose, parts, lighter, False)
+        count, is_better = 1 if status == UNDECIDED else 0, False
+        for turn in range(MOST_PARTS if count > 0 else 0):
+            status, apart = bound_part(pose, parts, count - 1, bodies, lighter)
+            if status == REFUSED:
+                count -= 1
+                if count == 0:
+                    break
+                continue
+            if apart < _ON_CURVES or turn & (turn - 1) == 0:
+                s, gap = _climb_from_point(pose, parts, ask, apart, scratch)
+                copy(out.poses[at], of_pose)
+                for i in range(of_cables.shape[0]):
+                    copy(out.cables[at, i], of_cables[i])
+                is_better = s > best * _LIGHTER and (
+                    _store(out, at, pose, ask, s, gap, straight_c) == SOLVED
+                )
+                if is_better:
+                    break
+                copy(of_pose, out.poses[at])
+                for i in range(of_cables.shape[0]):
+                    copy(of_cables[i], out.cables[at, i])
+            if not cut_part(pose, parts, count - 1, lighter):
+                break
+            count += 1
+        if not is_better:
+            return status == REFUSED and count == 0
+    return False
 
 
 @kernel
@@ -207,15 +362,13 @@ def massless(pose: Pose, lp: Programme) -> tuple[float, bool]:
 
 
 @element
-def _walk(pose: Pose, lp: Programme, ask: Ask, scratch: Scratch) -> tuple[float, float]:
+def _walk(pose: Pose, lp: Programme, ask: Ask) -> tuple[float, float]:
     """Solve by linear programmes, one a Newton step; return s and the last relative step.
 
-    The basis of the straight cables is the start. A cable that wants less than no tension is left
-    to hang from then on, unless its sag is limited. An infinite step tells that the steps do not
+    The basis of the straight cables is the start. An infinite step tells that the steps do not
     settle.
     """
-    c = pose.cables
-    n = c.shape[1]
+    n = pose.cables.shape[1]
     s = float(lp.z[n])  # of straight cables
     make_straight(pose, 0.5)
     for iteration in range(_MOST_STEPS):
@@ -226,13 +379,6 @@ def _walk(pose: Pose, lp: Programme, ask: Ask, scratch: Scratch) -> tuple[float,
         before, s = s, float(lp.z[n])
         step = abs(s - before) / abs(s)
         step = max(step, _pull(pose, lp, ask, iteration == 0))
-        some_hang = False
-        for i in range(n):
-            if lp.dual[i] < 0.0 and c[LEAST, i] == 0.0 and c[FLOOR, i] == PULL_FLOOR:
-                c[HANGS, i] = 1.0
-            some_hang = some_hang or c[HANGS, i] > 0.0
-        if some_hang:
-            step = max(step, _hang(pose, lp, scratch))
         if not step < np.inf:
             return s, np.inf
         if iteration > 0 and step < _SMALL_STEP:
@@ -270,17 +416,14 @@ def _write_programme(lp: Programme, pose: Pose, ask: Ask) -> None:
     c, table = pose.cables, lp.table
     m, n = lp.basis.size, lp.dual.size
     for i in range(n):
-        hangs = c[HANGS, i] > 0.0
         rest, slope = _tension_line(c, i)
         reach = 1.0 / (slope * c[UNIT, i])
         low, low_c = smallest_pull(pose, i)
         top = (ask.f_0 * c[STRENGTH, i] - rest) * reach
         top_s = ask.f_s * c[STRENGTH, i] * reach
-        # The pull of a hanging cable is settled elsewhere: here it is a part of the load.
-        c[TOP, i] = c[P, i] / c[UNIT, i] if hangs else top
-        c[TOP_S, i] = 0.0 if hangs else top_s
-        lp.room[i] = 0.0 if hangs else top - low - low_c * ask.c_0
-        lp.room_slope[i] = 0.0 if hangs else top_s - low_c * ask.c_s
+        c[TOP, i], c[TOP_S, i] = top, top_s
+        lp.room[i] = top - low - low_c * ask.c_0
+        lp.room_slope[i] = top_s - low_c * ask.c_s
         c[UP, i] = c[SHARE, i] * (c[V, i] - c[V_P, i] * c[P, i]) / pose.scale[FORCE]
     write_wrenches(pose)
     for k in range(m):
@@ -290,7 +433,7 @@ def _write_programme(lp: Programme, pose: Pose, ask: Ask) -> None:
             wrench = c[WRENCH + row, i]
             slope -= wrench * c[TOP_S, i]
             rest += wrench * c[TOP, i] + c[UP, i] * c[LIFT + row, i]
-            table[k, i] = 0.0 if c[HANGS, i] > 0.0 else wrench
+            table[k, i] = wrench
         lp.slope[k] = table[k, n] = slope
         table[k, n + 1] = rest
 
@@ -299,8 +442,6 @@ def _write_programme(lp: Programme, pose: Pose, ask: Ask) -> None:
 def _pull_of(lp: Programme, pose: Pose, ask: Ask, i: int) -> float:
     """Return the pull of a cable in the solution of the linear programme."""
     c = pose.cables
-    if c[HANGS, i] > 0.0:
-        return float(c[P, i])
     limit = (ask.f_0 + lp.z[lp.dual.size] * ask.f_s) * c[STRENGTH, i]
     rest, slope = _tension_line(c, i)
     return float((limit - rest) / slope - lp.z[i] * c[UNIT, i])
@@ -341,57 +482,3 @@ def _value_wrenches(pose: Pose, lp: Programme, scratch: Scratch) -> bool:
     for q in range(m):
         value[q] /= coupling
     return True
-
-
-@inner
-def _hang(pose: Pose, lp: Programme, scratch: Scratch) -> float:
-    """Let hanging cables find their pull; return the largest relative step of them."""
-    c = pose.cables
-    if not _value_wrenches(pose, lp, scratch):
-        return np.inf
-    largest = 0.0
-    for i in range(c.shape[1]):
-        if c[HANGS, i] > 0.0:
-            largest = max(largest, _settle_hanging(pose, scratch.value, i))
-    return largest
-
-
-@inner
-def _settle_hanging(pose: Pose, value: FloatArray, i: int) -> float:
-    """Move a hanging cable to the pull at which s cannot rise; return the relative step.
-
-    There value · W'(p) = 0: it is at no limit, but where its own weight harms least. W' is its
-    horizontal part plus the slope v' of the upward pull, so the condition asks for one v'. What
-    that is above the drop falls about as X² / (24 L p³), L being the chord: Newton in logarithms.
-    An infinite step tells that there is no such pull.
-    """
-    c = pose.cables
-    upward = along(pose, value, LIFT, i) * (c[SHARE, i] * c[UNIT, i] / pose.scale[FORCE])
-    sideways = along(pose, value, WRENCH, i) - upward * c[V_P, i]
-    goal = -sideways / upward - c[D, i]
-    if not (upward > 0.0 and goal > 0.0):
-        return np.inf
-    before = c[P, i]
-    p = (c[X2, i] / (24.0 * c[CHORD, i] * goal)) ** (1.0 / 3.0)
-    for _ in range(_MOST_TURNS):
-        excess = _lift_slope(c, i, p) - c[D, i]
-        excess_ahead = _lift_slope(c, i, p * (1.0 + _ALONG)) - c[D, i]
-        if not (excess_ahead > 0.0 and excess > excess_ahead):
-            return np.inf
-        turn = np.log(excess / goal) / np.log(excess / excess_ahead) * np.log(1.0 + _ALONG)
-        p *= np.exp(min(max(turn, -_LARGEST_TURN), _LARGEST_TURN))
-        if abs(turn) < _SETTLED:
-            break
-    if not (PULL_FLOOR < p < np.inf):
-        return np.inf
-    c[P, i] = p
-    c[L, i] = settled_length(c, i, p)
-    return float(abs(p - before) / p)
-
-
-@inner
-def _lift_slope(c: FloatArray, i: int, p: float) -> float:
-    """Return the slope of a cable's upward pull in its pull."""
-    length = settled_length(c, i, p)
-    _, F_p, F_l, _, v_p, v_l, _, _, _ = unit_cable(p, length, c[X2, i], c[D, i], c[KAPPA, i])
-    return float(v_p - v_l * F_p / F_l)

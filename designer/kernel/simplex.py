@@ -23,7 +23,7 @@ _TOLERANCE = 1e-11
 """Violation of a bound that is rounding; bounds are about one."""
 _RANK = 1e-9
 """Largest element of a row below which it depends on the others."""
-_SMALLEST_PIVOT = 1e-12
+_SMALLEST_PIVOT, _DOUBTFUL_PIVOT = 1e-10, 1e-6
 _STEEPEST = 1e9
 """Fall of s at a vertex that hardly depends on it."""
 _MOST_PIVOTS = 60
@@ -38,6 +38,8 @@ class Programme(NamedTuple):
     ----------
     table : array (m, n + 2)
         Columns of z, then h and r; while solving, eliminated so that `basis` has unit columns.
+    written : array (m, n + 2)
+        The table as it was when elimination began.
     slope : array (m,)
         Column h, kept.
     basis : array (m,)
@@ -53,6 +55,7 @@ class Programme(NamedTuple):
     """
 
     table: FloatArray
+    written: FloatArray
     slope: FloatArray
     basis: IntArray
     rests: IntArray
@@ -66,6 +69,7 @@ class Programme(NamedTuple):
 def new_programme(m: int, n: int) -> Programme:
     """Return the arrays for n unknowns in m equations."""
     return Programme(
+        np.zeros((m, n + 2)),
         np.zeros((m, n + 2)),
         np.zeros(m),
         np.zeros(m, dtype=np.int64),
@@ -85,6 +89,7 @@ def choose_basis(lp: Programme) -> bool:
     """
     table, basis = lp.table, lp.basis
     m, n = basis.size, lp.dual.size
+    _copy(table, lp.written)
     for k in range(m):
         best, size = 0, 0.0
         for j in range(n):
@@ -109,6 +114,19 @@ def choose_basis(lp: Programme) -> bool:
 @element
 def rebuild(lp: Programme) -> bool:
     """Eliminate the columns of the present basis; False if they are dependent."""
+    _copy(lp.table, lp.written)
+    return _eliminate(lp)
+
+
+@element
+def _copy(source: FloatArray, target: FloatArray) -> None:
+    for k in range(source.shape[0]):
+        for j in range(source.shape[1]):
+            target[k, j] = source[k, j]
+
+
+@element
+def _eliminate(lp: Programme) -> bool:
     table, basis = lp.table, lp.basis
     m, width = basis.size, table.shape[1]
     for k in range(m):
@@ -129,6 +147,7 @@ def rebuild(lp: Programme) -> bool:
 @element
 def maximise(lp: Programme) -> int:
     """Solve from an eliminated table and where unknowns rest; return `OPTIMAL` or why not."""
+    is_fresh = True
     for turn in range(_MOST_PIVOTS + lp.dual.size):
         s_row = _vertex(lp)
         if _has_closed(lp) or (turn == 0 and not _is_summit(lp)):
@@ -136,14 +155,22 @@ def maximise(lp: Programme) -> int:
             # at its summit this one may not be: rest anew, and come down.
             _rest(lp)
             s_row = _vertex(lp)
-        row, at_upper, excess = _most_violated(lp)
+        row, at_upper, excess = most_violated(lp)
         if excess <= _TOLERANCE:
             return STALLED if _has_closed(lp) else OPTIMAL
         entering = _entering(lp, row, at_upper)
+        is_doubtful = entering < 0 or abs(lp.table[row, entering]) < _DOUBTFUL_PIVOT
+        if is_doubtful and not is_fresh:  # it may be what rounding has left
+            _copy(lp.written, lp.table)
+            if not _eliminate(lp):
+                return STALLED
+            is_fresh = True
+            continue
         if entering < 0:
             return INFEASIBLE
         if row == s_row or not abs(lp.table[row, entering]) > _SMALLEST_PIVOT:
             return STALLED
+        is_fresh = False
         _pivot(lp.table, row, entering)
         lp.rests[lp.basis[row]] = AT_TOP if at_upper else _AT_ZERO
         lp.rests[entering] = _NOWHERE
@@ -215,7 +242,7 @@ def _has_closed(lp: Programme) -> bool:
 
 
 @element
-def _most_violated(lp: Programme) -> tuple[int, bool, float]:
+def most_violated(lp: Programme) -> tuple[int, bool, float]:
     """Return row, side and amount of the worst violation among the unknowns of the basis."""
     worst_row, at_upper, worst = -1, False, 0.0
     s = lp.z[lp.dual.size]

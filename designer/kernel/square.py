@@ -20,6 +20,8 @@ from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import (
     LOAD_FACTOR,
     MASSLESS_TENSION,
+    NO_FINITE_CABLE,
+    SOLVED,
     TOLERANCE,
     Answers,
     judge,
@@ -53,8 +55,11 @@ from designer.kernel.lanes import (
     place,
     put_cables,
 )
-from designer.kernel.linear import are_below, fill, solve_lanes
+from designer.kernel.linear import are_below, fill, solve_lanes, solve_small
+from designer.kernel.pose import closing_length, new_pose
+from designer.kernel.pose import place as place_pose
 from designer.kernel.table import (
+    CHORD,
     KAPPA,
     L_0,
     LANE_ROWS,
@@ -71,6 +76,7 @@ from designer.kernel.table import (
     P,
     T,
     V,
+    condensed,
 )
 from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
 
@@ -84,6 +90,10 @@ _ON_BOUNDARY = 1e-12
 """Compression over the largest tension that is rounding: the pose is on the hull's boundary."""
 _SINGULAR = 1e12
 """Tension of straight cables over the load: beyond, they leave some wrench without tension."""
+_SURELY = 1e-8
+"""Relative: what a proof that no finite cable is left has to be clear by, beside rounding."""
+_NOTHING = 1e-300
+_HALVINGS = 60
 
 
 @kernel
@@ -249,3 +259,107 @@ def _store(
         is_held = is_held and poses[HIGHEST, j] <= _SINGULAR * poses[PULL, j]
         out.poses[at, LOAD_FACTOR] = overload if closed else np.nan
         out.poses[at, MASSLESS_TENSION] = poses[HIGHEST, j] if is_held else np.nan
+
+
+@kernel
+def refuse_points_range(
+    start: int,
+    stop: int,
+    situation: Situation,
+    figures: CableFigures,
+    out: Answers,
+) -> None:
+    """Tell of poses of a point mass on as few cables as hold it that no finite cable does.
+
+    Of those from `start` to `stop` that are to be sized and have no answer. Without a horizontal
+    load the pulls are p = s λ, with λ as straight cables have it. Strength leaves each p a range;
+    where these have no s in common, no cable is left. The lift grows with s: where it is below zero
+    at the largest s, it is so for all.
+    """
+    n = situation.attachments.shape[0]
+    pose = new_pose(situation, figures)
+    c, system, pull = pose.cables, np.empty((n, n + 1)), np.empty(n)
+    for at in range(start, stop):
+        if out.verdict[at] == SOLVED:
+            continue
+        place_pose(pose, situation, figures, at)
+        if pose.rows[n - 1] != 2 or pose.load[0] != 0.0 or pose.load[1] != 0.0:
+            continue
+        for k in range(n):
+            row = pose.rows[k]
+            system[k, n] = pose.load[row]
+            for i in range(n):
+                system[k, i] = c[LEVEL + row, i] + c[LIFT + row, i] * c[D, i]
+        if not solve_small(system, pull):
+            continue
+        least, largest, smallest_s, largest_s = np.inf, -np.inf, 0.0, np.inf
+        for i in range(n):
+            low, high = _pulls_borne(c, i)
+            share = max(pull[i], _NOTHING)
+            smallest_s, largest_s = max(smallest_s, low / share), min(largest_s, high / share)
+            least, largest = min(least, pull[i]), max(largest, pull[i])
+        lift, size = 0.0, 0.0
+        for i in range(n):
+            p = largest_s * max(pull[i], _NOTHING)
+            length = closing_length(p, c[X2, i], c[D, i], c[KAPPA, i], 3)
+            up = c[SHARE, i] * condensed(p, length, c[X2, i], c[D, i], c[KAPPA, i])[2]
+            lift += up
+            size += abs(up)
+        is_empty = smallest_s > largest_s * (1.0 + _SURELY)
+        if least >= -_SURELY * largest and (is_empty or lift < -_SURELY * size):
+            out.verdict[at] = NO_FINITE_CABLE
+
+
+@inner
+def _pulls_borne(c: FloatArray, i: int) -> tuple[float, float]:
+    """Return the smallest and the largest pull that the strength of a cable bears.
+
+    Somewhere a cable is parallel to its chord, and there its tension is pull times chord. From that
+    bound downward the top tension, which is convex, falls, and once the cable is slack it rises.
+    Where the tangents at both ends of a bracket of its least value cross above the strength, no
+    pull is borne: infinity and zero.
+    """
+    strength = c[STRENGTH, i]
+    low, high = PULL_FLOOR, strength / c[CHORD, i]
+    t_low, slope_low = _top_tension(c, i, low)
+    t_high, slope_high = _top_tension(c, i, high)
+    borne = low if t_low <= strength else high if t_high <= strength else 0.0
+    slack, tight = low, high
+    for _ in range(_HALVINGS if borne == 0.0 else 0):
+        crossing = (t_high - t_low + slope_low * slack - slope_high * tight) / (
+            slope_low - slope_high
+        )
+        if slope_low >= 0.0 or t_low + slope_low * (crossing - slack) > strength:
+            return np.inf, 0.0
+        p = np.sqrt(slack * tight)
+        t, slope = _top_tension(c, i, p)
+        if t <= strength:
+            borne = p
+            break
+        if slope > 0.0:
+            tight, t_high, slope_high = p, t, slope
+        else:
+            slack, t_low, slope_low = p, t, slope
+    if borne == 0.0:
+        return low, high
+    for side in range(2):
+        inside, outside = borne, low if side == 0 else high
+        if _top_tension(c, i, outside)[0] > strength:
+            for _ in range(_HALVINGS):
+                p = 0.5 * (inside + outside)
+                if _top_tension(c, i, p)[0] > strength:
+                    outside = p
+                else:
+                    inside = p
+        if side == 0:
+            low = outside
+        else:
+            high = outside
+    return low, high
+
+
+@element
+def _top_tension(c: FloatArray, i: int, p: float) -> tuple[float, float]:
+    length = closing_length(p, c[X2, i], c[D, i], c[KAPPA, i], 3)
+    _, _, _, _, t, slope, _ = condensed(p, length, c[X2, i], c[D, i], c[KAPPA, i])
+    return t, slope

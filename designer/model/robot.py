@@ -16,6 +16,8 @@ from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, AttachedEach
 from designer.model.motion import Motion
 from designer.model.winches import Winches
 
+SAG_MAX, SAG_AT_MOST = 0.2, 0.5
+"""Largest sag over chord of a cable that counts as taut: unless given, and at most."""
 _AS_BUILT = frozen_array(np.eye(3))
 
 
@@ -84,10 +86,9 @@ class Robot:
     tension_min_N : float
         Least tension anywhere in any cable, where there are more cables than degrees of freedom:
         at its lower end, or at its lowest point where that hangs below both ends [N].
-    sag_max, family_sag_max : float or None
-        Largest sag over chord of any cable, where there are more cables than degrees of freedom:
-        of cables that are given, and of a family that is sized; None for any. See
-        `designer.statics.shape.sag_m`. A pose that cannot keep it is solved without.
+    sag_max : float
+        Largest sag over chord of any cable, see `designer.statics.shape.sag_m`: where there are
+        more cables than degrees of freedom, a pose that cannot keep it is not held.
     gravity_direction : array (3,)
         Where things fall, world frame; its length does not count.
     is_planar : bool
@@ -108,8 +109,7 @@ class Robot:
         default_factory=lambda: frozen_array(np.zeros(2))
     )
     tension_min_N: checked.NotNegative = 0.0
-    sag_max: checked.Positive | None = None
-    family_sag_max: checked.Positive | None = None
+    sag_max: Annotated[float, checked.Number(above=0.0, most=SAG_AT_MOST)] = SAG_MAX
     gravity_direction: checked.Vector = field(
         default_factory=lambda: frozen_array([0.0, 0.0, -1.0])
     )

@@ -53,8 +53,8 @@ class Verdict(IntEnum):
         1,
         State.FAILS,
         ("WARNING", ""),
-        "no cables hold it",
-        "no cables can hold the platform, straight or sagging, which is proved",
+        "no taut cables hold it",
+        "no tensions of taut cables hold the platform, which is proved",
         "Move the configured pose below the exit points and inside their outline.",
     )
     NO_FINITE_CABLE = (
@@ -62,7 +62,8 @@ class Verdict(IntEnum):
         State.FAILS,
         ("WARNING_PALE", "//////"),
         "no finite cable",
-        "no cable of the family is thick enough: its own weight alone exceeds the allowable stress",
+        "no section of the family is strong enough to hold the platform and its own weight, "
+        "which is proved",
         "Move the configured pose away from the edge of the workspace, or lower.",
     )
     NOT_CONVERGED = (

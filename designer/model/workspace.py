@@ -13,11 +13,10 @@ from designer import checked
 from designer.arrays import FloatArray, frozen_array
 from designer.model.load_case import LoadCase
 from designer.model.region import CHUNK, Region, Sampling
+from designer.model.robot import SAG_AT_MOST, SAG_MAX
 from designer.model.space import Orientations, Space
 from designer.model.verdict import Verdict
 
-SAG_MAX = 0.2
-"""Largest sag over chord of products, where the study gives none: a slacker one hangs."""
 HangsBelow = Literal["include", "exclude"]
 
 
@@ -41,9 +40,8 @@ class Workspace(checked.Value):
         How the platform shall be turned at every position.
     floor_m : float or None
         Height along the vertical that no cable shall hang below [m]; None for no floor.
-    sag_max, family_sag_max : float or None
-        Largest sag over chord of products, and of the configured cable; None for any. Internal
-        forces are chosen to keep it, see `Robot.sag_max`.
+    sag_max : float
+        Largest sag over chord of the cables, see `Robot.sag_max`.
     proof_s : float
         Time for a proof that the chosen rope holds in all poses [s]; zero for none.
     """
@@ -56,8 +54,7 @@ class Workspace(checked.Value):
     clearance_m: checked.NotNegative | None = None
     orientations: Orientations = field(default_factory=Orientations)
     floor_m: checked.Finite | None = None
-    sag_max: checked.Positive | None = SAG_MAX
-    family_sag_max: checked.Positive | None = None
+    sag_max: Annotated[float, checked.Number(above=0.0, most=SAG_AT_MOST)] = SAG_MAX
     proof_s: checked.NotNegative = 0.0
 
     @property

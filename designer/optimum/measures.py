@@ -110,7 +110,7 @@ class Quick:
         built, workspace = self._built, self.workspace
         places = np.concatenate([*workspace.places()])
         material = built.material(self._study.material)
-        sizing = size_poses(built.robot, Poses.at(places), material, seeks_better=False)
+        sizing = size_poses(built.robot, Poses.at(places), material)
         demand = demand_of(sizing.diameter_m, sizing.statics, workspace.hangs_below)
         not_held = float(np.isposinf(demand).mean())
         if not_held:
@@ -118,7 +118,7 @@ class Quick:
         if np.isneginf(demand).all():
             raise NotHeldError(2.0, "every pose is left out")
         at, hangs_below = int(demand.argmax()), workspace.hangs_below
-        closer = partial(diameter_demand, built.robot, material, hangs_below, seeks_better=False)
+        closer = partial(diameter_demand, built.robot, material, hangs_below)
         return climbed(self.evenly.space, closer, places[at], float(demand[at]))
 
     @cached_property
@@ -166,7 +166,7 @@ class Quick:
             return case.verification.max_tension_N
         worst = climbed(
             self.evenly.of_case(case.case).space,
-            lambda places: rope_demand(*of_rope, places, seeks_better=False)[:, 0],
+            lambda places: rope_demand(*of_rope, places)[:, 0],
             case.verification.worst_place,
             case.verification.max_tension_N,
         )

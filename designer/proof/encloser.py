@@ -228,12 +228,13 @@ class Encloser:
             raised = np.zeros(len(raised))
         for share in np.unique(raised):
             at = np.flatnonzero(raised == share)
-            sag_max = None if self._sag is None else self._sag / (1.0 + share)
             robot = replace(
-                self._robot, tension_min_N=(1.0 + share) * self._least_N, sag_max=sag_max
+                self._robot,
+                tension_min_N=(1.0 + share) * self._least_N,
+                sag_max=self._robot.sag_max / (1.0 + share),
             )
             poses = Poses.at(self.cover.places(coordinates[at]))
-            statics = solve_sagging(robot, poses, self._cable, seeks_better=False)
+            statics = solve_sagging(robot, poses, self._cable)
             pulls = _pulls_of(statics, self._cable)
             solved[at] = statics.is_solved & np.isfinite(pulls).all(axis=1)
             pull[at] = np.where(solved[at][:, None], pulls, 1.0)

@@ -89,7 +89,7 @@ def _ring(radius_m: float, tilt_rad: float) -> Poses:
 def _needed_m(tilt_rad: float) -> FloatArray:
     from designer.sizing.newton import size_poses
 
-    sizing = size_poses(FAST_CABIN, _ring(_RIM_M, tilt_rad), _WIRE_ROPE, is_quick=True)
+    sizing = size_poses(FAST_CABIN, _ring(_RIM_M, tilt_rad), _WIRE_ROPE)
     return np.where(sizing.statics.is_solved, sizing.diameter_m, np.inf)
 
 

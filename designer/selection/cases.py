@@ -31,7 +31,7 @@ from designer.statics.cable_loss import CableLoss
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
 from designer.workspace.demand import settled, tension_demand
-from designer.workspace.refine import LIGHT, Worst, refine_over_branches
+from designer.workspace.refine import LIGHT, Worst, refine
 
 _MOST_SAMPLES = 256
 """Poses in which lengths are kept, for the chosen one."""
@@ -385,7 +385,7 @@ def _search_settled(result: CaseResult) -> CaseResult:
     sampled = over_kept_lengths(loaded, workspace, _MOST_SAMPLES)
     demand = partial(tension_demand, loaded, workspace.hangs_below)
     starts = np.concatenate([result.sampled.worst_places, sampled.worst_places])
-    (worst,) = refine_over_branches(workspace.space, demand, starts, LIGHT)
+    (worst,) = refine(workspace.space, demand, starts, LIGHT)
     # Lengths are those before it settles.
     (lengths,) = refined_each(loaded.robot, workspace, [loaded.cable], [sampled], LIGHT)
     return _with_worst(replace(result, verification=lengths, is_full=True), worst)
@@ -419,7 +419,7 @@ def _turned_once(result: CaseResult, passed: list[CaseResult]) -> CaseResult:
         passed.append(steeper)
         demand = partial(tension_demand, steeper.loaded, steeper.workspace.hangs_below)
         start = steeper.verification.worst_place[None]
-        (worst,) = refine_over_branches(steeper.workspace.space, demand, start, LIGHT)
+        (worst,) = refine(steeper.workspace.space, demand, start, LIGHT)
         moved = _with_worst(steeper, worst)
         result = governing([result, steeper, moved])
         has_moved = moved.utilisation > steeper.utilisation * (1.0 + _SAME)

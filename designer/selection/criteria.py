@@ -110,17 +110,15 @@ class Criterion:
 
 def criteria_of(robot: Robot, workspace: Workspace, selection: Selection | None) -> list[Criterion]:
     """Return what a study asks of the equilibria of every load case beside strength."""
-    sag_max = robot.family_sag_max if selection is None else robot.sag_max
-    of_cables = _of_cables(robot.tension_min_N, sag_max)
     return [
-        *of_cables,
+        *_of_cables(robot.tension_min_N, robot.sag_max),
         *_of_winches(robot.winches),
         *_of_workspace(workspace),
         *(() if selection is None else _of_limits(selection)),
     ]
 
 
-def _of_cables(least_N: float, sag_max: float | None) -> Iterator[Criterion]:
+def _of_cables(least_N: float, sag_max: float) -> Iterator[Criterion]:
     """Yield what is asked of the cables whatever the region, and of the platform they hold."""
     yield Criterion(
         id="least_tension",
@@ -142,17 +140,16 @@ def _of_cables(least_N: float, sag_max: float | None) -> Iterator[Criterion]:
         limits=(0.0,),
         kind="above",
     )
-    if sag_max is not None:
-        yield Criterion(
-            id="sag",
-            title="Sag",
-            formula="largest distance of a cable from its chord ≤ this share of the chord",
-            source=f"workspace.sag; {WHERE}",
-            unit="",
-            quantity=lambda _, statics: sag_ratio(statics),
-            limits=(sag_max,),
-            kind="at_most",
-        )
+    yield Criterion(
+        id="sag",
+        title="Sag",
+        formula="largest distance of a cable from its chord ≤ this share of the chord",
+        source=f"workspace.sag; {WHERE}",
+        unit="",
+        quantity=lambda _, statics: sag_ratio(statics),
+        limits=(sag_max,),
+        kind="at_most",
+    )
 
 
 def _of_winches(winches: Winches) -> Iterator[Criterion]:

@@ -13,7 +13,7 @@ from designer.progress import Advance
 from designer.proof.prove import Budget, Proof, prove
 from designer.selection.cases import CaseResult, governing
 from designer.workspace.demand import rope_demand
-from designer.workspace.refine import LIGHT, refine_over_branches
+from designer.workspace.refine import LIGHT, refine
 
 
 def prove_governing(
@@ -53,7 +53,7 @@ def prove_governing(
     place, utilisation = proof.worst[: space.n_coordinates], proof.found
     if np.isfinite(utilisation):
         demand = partial(rope_demand, loaded.robot, cable, workspace.hangs_below)
-        refined = refine_over_branches(space, demand, place[None], LIGHT)[0]
+        refined = refine(space, demand, place[None], LIGHT)[0]
         if refined.demand > utilisation * cable.allowable_tension_N:
             place, utilisation = refined.place, refined.demand / cable.allowable_tension_N
     verification = replace(

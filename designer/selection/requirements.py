@@ -32,7 +32,7 @@ from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
 from designer.study import Selection
 from designer.workspace.demand import is_counted, is_left_out, rope_demand, settled
-from designer.workspace.refine import LIGHT, Effort, Worst, refine_over_branches
+from designer.workspace.refine import LIGHT, Effort, Worst, refine
 
 QUICK_SAMPLES, SLOW_SAMPLES, FEWEST_SAMPLES = 2000, 500, 16
 """Poses evaluated in all directions of a load case together, of robots that are quick or slow to
@@ -150,7 +150,7 @@ def _evaluate_case(
         loaded = loads.directions[number]
         columns = [of_case[k] for k in np.flatnonzero(worst == number)]
         demand = partial(_severity, loaded, workspace, columns)
-        extremes = refine_over_branches(space, demand, places, LIGHT if keeps else _OF_MANY)
+        extremes = refine(space, demand, places, LIGHT if keeps else _OF_MANY)
         for criterion, extreme in zip(columns, extremes, strict=True):
             if np.isneginf(extreme.demand):  # no pose of the case counts
                 continue
@@ -181,7 +181,7 @@ def _turned(
         if loaded.keeps_lengths or (workspace.space.is_discrete and not again.rounds):
             break
         demand = partial(_severity, loaded, workspace, [criterion])
-        (moved,) = refine_over_branches(workspace.space, demand, place[None], again)
+        (moved,) = refine(workspace.space, demand, place[None], again)
         if moved.demand <= severity + ROUNDING * abs(severity):
             break
         extreme = moved
@@ -193,11 +193,9 @@ def _severity(
     workspace: Workspace,
     criteria: Sequence[Criterion],
     places: FloatArray,
-    *,
-    seeks_better: bool = True,
 ) -> FloatArray:
     """Return the demand (n, n_criteria) of places; minus infinite where a place does not count."""
-    statics, rows, counts = equilibria(loaded, workspace, places, seeks_better=seeks_better)
+    statics, rows, counts = equilibria(loaded, workspace, places)
     with np.errstate(invalid="ignore", divide="ignore"):
         severities = [
             np.fmax.reduce(criterion.severity(criterion.quantity(loaded, statics)), axis=1)
@@ -209,15 +207,15 @@ def _severity(
 
 
 def equilibria(
-    loaded: Loaded, workspace: Workspace, places: FloatArray, *, seeks_better: bool = True
+    loaded: Loaded, workspace: Workspace, places: FloatArray
 ) -> tuple[Statics, IntArray, BoolArray]:
     """Return the equilibria at places, at rest on kept lengths; of which they are; which count."""
     poses = Poses.at(places)
     if not loaded.keeps_lengths:
-        statics = solve_sagging(loaded.robot, poses, loaded.cable, seeks_better=seeks_better)
+        statics = solve_sagging(loaded.robot, poses, loaded.cable)
         counts = is_counted(statics, workspace.hangs_below)
         return statics, np.arange(len(places)), counts
-    loss = settled(loaded, poses, seeks_better=seeks_better)
+    loss = settled(loaded, poses)
     rows = np.flatnonzero(loss.before.is_solved)
     rests = (loss.fate[rows] == Fate.HOLDS) | (loss.fate[rows] == Fate.RESTS_ELSEWHERE)
     return loss.statics, rows, rests & ~is_left_out(loss.before, workspace.hangs_below)[rows]
@@ -265,7 +263,7 @@ def extreme_lengths_m(loads: CaseLoads) -> tuple[FloatArray, FloatArray]:
         return rope_demand(loaded.robot, loaded.cable, workspace.hangs_below, places, **how)[:, 1:]
 
     starts = workspace.thinned(SLOW_SAMPLES)
-    extremes = refine_over_branches(workspace.space, demand, starts, _OF_MANY)
+    extremes = refine(workspace.space, demand, starts, _OF_MANY)
     lengths = np.array([extreme.demand for extreme in extremes]).reshape(2, -1)
     lengths[np.isinf(lengths)] = np.nan
     return lengths[0], -lengths[1]

@@ -24,7 +24,7 @@ from designer.workspace.refine import (
     Demand,
     Effort,
     Worst,
-    refine_each_over_branches,
+    refine_each,
     worst_over_samples,
 )
 
@@ -139,7 +139,7 @@ def refined_each(
     """Search for the extremes of cables between the samples, from the worst, in a batch."""
     starts = [of_cable.worst_places for of_cable in sampled]
     demand = _demand(robot, workspace, cables)
-    worsts = refine_each_over_branches(workspace.space, demand, starts, effort)
+    worsts = refine_each(workspace.space, demand, starts, effort)
     verifications = map(_verification, cables, worsts)
     return [
         replace(verification, longest_m=np.maximum(verification.longest_m, of_cable.longest_m))
@@ -150,9 +150,9 @@ def refined_each(
 def _demand(robot: Robot, workspace: Workspace, cables: Sequence[Cable]) -> Demand:
     """Return what each of the cables meets, see `rope_demand`."""
 
-    def demand(places: FloatArray, search: IntArray, *, seeks_better: bool = True) -> FloatArray:
+    def demand(places: FloatArray, search: IntArray) -> FloatArray:
         cable = Cables(cables, search)
-        return rope_demand(robot, cable, workspace.hangs_below, places, seeks_better=seeks_better)
+        return rope_demand(robot, cable, workspace.hangs_below, places)
 
     return demand
 
@@ -257,7 +257,7 @@ def _meet(
         shared = meets.failed[open_rows] * meets.failed.sum(axis=0)
         lost[open_rows] = shared.argmax(axis=1)
         tried = Cables([cables[k] for k in open_rows.tolist()], np.arange(len(open_rows)))
-        probed = solve_sagging(robot, poses.part(lost[open_rows]), tried, seeks_better=False)
+        probed = solve_sagging(robot, poses.part(lost[open_rows]), tried)
         open_rows = open_rows[probed.is_solved]
     for first in range(0, len(open_rows), _TOGETHER):
         hard = {

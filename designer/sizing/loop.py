@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -79,7 +79,6 @@ def size_by_loop(
     tension = float(solve_massless(robot, pose).largest_tension_N)
     if not np.isfinite(tension):
         return LoopSizing((), has_converged=False)
-    robot = replace(robot, sag_max=robot.family_sag_max)
     iterates = [Iterate(tension, material.diameter_for_tension_m(tension))]
     for _ in range(max_turns):
         cable = material.cable(iterates[-1].diameter_m)

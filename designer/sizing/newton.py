@@ -33,7 +33,7 @@ class Sizing:
         What is left of the platform's balance, moments divided by the platform's reach [N].
     is_thinnest : array (...)
         Whether it is known that no thinner cable of the family holds the pose: of a point mass on
-        as few cables as hold it, which has one equilibrium. Elsewhere it is the thinnest found.
+        as few cables as hold it, which has one equilibrium, and where that was to be proved.
     """
 
     statics: Statics
@@ -50,20 +50,18 @@ def size_poses(
     poses: Poses,
     material: Material | MaterialsByPose,
     *,
-    seeks_better: bool = True,
-    is_quick: bool = False,
+    proves_thinnest: bool = False,
 ) -> Sizing:
     """Return the thinnest cable of the family for each pose (...).
 
     Solves Riehl et al., ICRA 2010, eqs. (9) and (11)-(14), where at the optimum the most loaded
     cable is at the allowable stress, by the compiled Newton of `designer.kernel.square`; with more
     cables than degrees of freedom, over all internal forces, by `designer.kernel.redundant`. Where
-    another branch might be thinner, `designer.kernel.search` tries more of them, unless
-    it is not to ``seeks_better`` than what was found first; or where nothing was found at first,
-    unless it ``is_quick``.
+    it ``proves_thinnest`` it is proved of such a robot that no thinner taut cable holds a pose, to
+    five parts in a million, or such a cable is the answer.
     """
     task = _task(robot, poses, material, None)
-    solution, run = solve_task(robot, poses, task, seeks_better=seeks_better, is_quick=is_quick)
+    solution, run = solve_task(robot, poses, task, proves_best=proves_thinnest)
     heaviest = _densities(material).max(axis=-1)
     area = solution.weight_N_per_m / (STANDARD_GRAVITY_M_PER_S2 * heaviest)
     massless_area = solution.massless_tension_N / material.allowable_stress_Pa
@@ -82,7 +80,9 @@ def size_poses(
         massless_diameter_m=np.sqrt(4.0 * massless_area / np.pi).reshape(shape),
         closure_residual_m=solution.closure_residual_m.reshape(shape),
         equilibrium_residual_N=solution.equilibrium_residual_N.reshape(shape),
-        is_thinnest=((solution.verdict == Verdict.SOLVED) & robot.has_one_branch).reshape(shape),
+        is_thinnest=(
+            (solution.verdict == Verdict.SOLVED) & (solution.is_best | robot.has_one_branch)
+        ).reshape(shape),
     )
 
 
@@ -117,7 +117,7 @@ def _task(
         np.reshape(material.strength_length_m, density.shape),
         inverse_m_per_N,
         relative_weights=density / heaviest,
-        sag_max=robot.family_sag_max,
+        sag_max=robot.sag_max,
     )
 
 

@@ -190,7 +190,7 @@ class _Problem:
             size,
             np.full(robot.n_cables, robot.tension_min_N / size),
             massless_N / size,
-            _pulls_of_sag(robot.family_sag_max, geometry, material),
+            _pulls_of_sag(robot.sag_max, geometry, material),
         )
 
     def start(self) -> tuple[FloatArray, float]:

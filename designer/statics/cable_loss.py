@@ -86,8 +86,6 @@ def settle(
     cable: Cable,
     lost: int | None = None,
     growth: float = 0.0,
-    *,
-    seeks_better: bool = True,
 ) -> CableLoss:
     """Return what becomes of poses (n_poses,) on kept lengths.
 
@@ -98,7 +96,7 @@ def settle(
     stable is no rest. Where the platform moves by less than a hundredth of the cables' mean length,
     the others are said to hold it.
     """
-    before = solve_sagging(robot, poses, cable, seeks_better=seeks_better)
+    before = solve_sagging(robot, poses, cable)
     count, at = len(poses.position_m), np.flatnonzero(before.is_solved)
     fate = np.where(before.is_solved, Fate.FALLS, Fate.NOT_HELD).astype(np.int64)
     tension = np.full((count, robot.n_cables), np.nan)

@@ -28,6 +28,10 @@ if TYPE_CHECKING:
     from designer.kernel.batch import Solution
 
 
+_MARGINAL = 0.2
+"""Part of a wrench of unit length that its words leave out."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Statics:
     """Static equilibrium of poses with sagging cables; NaN wherever the verdict is not solved.
@@ -52,6 +56,10 @@ class Statics:
         Where the cables leave their pulleys, and how much lies on them.
     force_N : array (..., 3) or None
         Force on the platform beside its weight, base frame [N].
+    wrench : array (..., degrees of freedom) or None
+        Of a pose that one wrench proves to be impossible, that wrench, upright frame, of unit
+        length, moments over the reach of the attachments: what is needed has a part along it, what
+        the cables can do has none. NaN elsewhere.
     """
 
     robot: Robot
@@ -64,6 +72,7 @@ class Statics:
     force_z_N: FloatArray
     run: PulleyRun
     force_N: FloatArray | None = None
+    wrench: FloatArray | None = None
 
     def part(self, rows: int | IntArray) -> Statics:
         """Return some of the poses by their numbers, without leading axes for a single number."""
@@ -84,7 +93,24 @@ class Statics:
             force_z_N=chosen(self.force_z_N, n),
             run=PulleyRun(chosen(run.exit_points_m, n, 3), chosen(run.wrap_m, n)),
             force_N=None if self.force_N is None else chosen(self.force_N, 3),
+            wrench=None if self.wrench is None else chosen(self.wrench, self.wrench.shape[-1]),
         )
+
+    @property
+    def sentence(self) -> str:
+        """What became of a single pose, for the reader, with what the cables would have to do."""
+        verdict = Verdict(int(self.verdict))
+        if self.wrench is None or not np.isfinite(self.wrench).all():
+            return verdict.sentence
+        wrench = np.zeros(6)
+        wrench[self.robot.balance_rows] = self.wrench
+        parts = np.round(wrench.reshape(2, 3) @ self.robot.upright, 2) + 0.0
+        what = [
+            f"{verb} ({', '.join(f'{x:g}' for x in part)})"
+            for verb, part in zip(("push along", "turn it about"), parts, strict=True)
+            if np.linalg.norm(part) > _MARGINAL
+        ]
+        return f"{verdict.sentence} The cables would have to {' and '.join(what)}."
 
     @property
     def free_length_m(self) -> FloatArray:
@@ -255,8 +281,6 @@ def solve_sagging(
     poses: Poses,
     cable: Cable | Cables,
     force_N: FloatArray | None = None,
-    *,
-    seeks_better: bool = True,
 ) -> Statics:
     """Return the equilibrium of poses (...) with these cables, with sag and elasticity.
 
@@ -271,8 +295,6 @@ def solve_sagging(
         with the smallest largest tension over the allowable one.
     force_N : array (..., 3), optional
         Force on the platform beside its weight, base frame [N].
-    seeks_better : bool
-        Whether to try other branches where one may be better than that found first.
 
     Raises
     ------
@@ -292,7 +314,7 @@ def solve_sagging(
         relative_weights=weight / heaviest,
         sag_max=robot.sag_max,
     )
-    solution, run = solve_task(robot, poses, task, seeks_better=seeks_better)
+    solution, run = solve_task(robot, poses, task)
     solved = solution.verdict[:, None] == Verdict.SOLVED
     stiffness = np.where(solved, cable.axial_stiffness_N, np.nan)
     return statics_of(robot, poses, solution, run, stiffness, force_N, task.relative_weights)
@@ -332,6 +354,7 @@ def statics_of(
         force_z_N=force_z,
         run=run,
         force_N=force_N,
+        wrench=solution.wrench.reshape(*shape, robot.degrees_of_freedom),
     )
 
 

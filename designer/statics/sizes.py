@@ -6,19 +6,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray, IntArray, require_shape
+from designer.arrays import IntArray, require_shape
 from designer.kernel.calling import CableFigures, Meets, plain, share_out
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.progress import checkpoint
-from designer.statics.inverse import Statics, solve_sagging
-from designer.statics.shape import sag_ratio
-from designer.statics.task import LONG, situation_at
+from designer.statics.inverse import solve_sagging
+from designer.statics.task import situation_at
 
 _SHARE = 64
 """Sizes that one thread takes at a time; the first of them starts without a neighbour."""
-
-_SAME = 1e-9
 
 
 def is_quick(robot: Robot) -> bool:
@@ -109,9 +106,6 @@ def add_slowly(
 ) -> None:
     """Solve pairs of a cable and a pose, the hard ones with more patience, and add what they meet.
 
-    Other branches, which take a hundred times as long, are tried only where the first does not
-    serve: where it is overloaded, or exceeds the largest sag, or hangs.
-
     Parameters
     ----------
     meets
@@ -122,16 +116,10 @@ def add_slowly(
     cable: Cable | Cables
     cable = cables[rows[0]] if (rows == rows[0]).all() else Cables(cables, rows)
     part = poses.part(at)
-    statics = solve_sagging(robot, part, cable, seeks_better=False)
+    statics = solve_sagging(robot, part, cable)
     is_solved, tension_N = statics.is_solved, statics.largest_tension_N
     hangs, length_m = statics.hangs_below, statics.length_m
     allowable_N = np.array([each.allowable_tension_N for each in cables])[rows]
-    again = np.flatnonzero(_may_serve_better(statics, cable, allowable_N, leaves_out_hanging))
-    if len(again):
-        other = cable if isinstance(cable, Cable) else Cables(cables, rows[again])
-        better = solve_sagging(robot, part.part(again), other)
-        is_solved[again], tension_N[again] = better.is_solved, better.largest_tension_N
-        hangs[again], length_m[again] = better.hangs_below, better.length_m
     meets.failed[rows, at] = ~is_solved
     left_out = hangs & is_solved & leaves_out_hanging
     counts = is_solved & ~left_out
@@ -148,31 +136,3 @@ def add_slowly(
     order = order[used[order] > meets.utilisation[row[order], cell[order]]]
     meets.utilisation[row[order], cell[order]] = used[order]
     meets.pose[row[order], cell[order]] = of_pose[order]
-
-
-def _may_serve_better(
-    statics: Statics, cable: Cable | Cables, allowable_N: FloatArray, leaves_out_hanging: bool
-) -> BoolArray:
-    """Tell in which poses (n,) another branch is to be tried, as this one does not serve.
-
-    A cable that exceeds the largest sag in the branches of one pose does not serve, whatever
-    those of other poses are: the pose where it hangs lowest is tried before them.
-    """
-    robot, poses = statics.robot, statics.poses
-    doubtful = statics.largest_tension_N > allowable_N
-    if leaves_out_hanging:
-        doubtful |= statics.hangs_below
-    if not robot.is_redundant or robot.sag_max is None:
-        return np.asarray(doubtful | (statics.length_over_chord > LONG).any(axis=-1))
-    # What is not solved was searched for with any sag: of 1563 open poses of random robots a second
-    # search answered none.
-    excess = sag_ratio(statics).max(axis=-1) / robot.sag_max
-    hangs = excess > 1.0 + _SAME
-    if isinstance(cable, Cables):
-        doubtful |= hangs
-    elif hangs.any():
-        lowest = np.array([np.nanargmax(excess)])
-        sag = sag_ratio(solve_sagging(robot, poses.part(lowest), cable))
-        if (sag <= robot.sag_max * (1.0 + _SAME)).all():
-            doubtful |= hangs
-    return doubtful

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.arrays import FloatArray, IntArray
 from designer.kernel.calling import Situation, plain
-from designer.model.robot import Poses, Robot
+from designer.model.robot import SAG_MAX, Poses, Robot
 from designer.model.verdict import Verdict, are_open
 from designer.physics import pulley
 from designer.progress import checkpoint
 from designer.statics.geometry import (
     CableGeometry,
-    cable_geometry,
     level_geometry,
     upright_exit_points_m,
     upright_situation,
@@ -33,13 +32,8 @@ from designer.statics.pulleys import (
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution
 
-_WORTH_A_SEARCH = 5e-4
-"""Relative, in weight or tension: half of that in diameter."""
-_SAME = 1e-7
-"""Relative: what two searches may leave between them that end in the same branch."""
 _FEW_TURNS = 5
-"""Of pulleys, before poses that have come to rest are left out. A search, which costs more than
-all else, leaves them out after its first turn: a pose without an answer rests at once."""
+"""Of pulleys, before poses that have come to rest are left out."""
 LONG = 1.5
 """Length over chord above which a cable counts as far too long."""
 
@@ -59,8 +53,8 @@ class Task:
         1 / w; None asks for the lightest cable.
     relative_weights : float or array (n_cables,) or (n_poses, 1 or n_cables)
         Weight of the cables relative to w.
-    sag_max : float or None
-        Largest sag over chord, of more cables than degrees of freedom.
+    sag_max : float
+        Largest sag over chord.
     """
 
     situation: Situation
@@ -68,7 +62,7 @@ class Task:
     strength_m: float | FloatArray
     inverse_weight_m_per_N: float | FloatArray | None
     relative_weights: float | FloatArray = 1.0
-    sag_max: float | None = None
+    sag_max: float = SAG_MAX
 
     def part(self, at: IntArray) -> Task:
         """Return the task for some of poses (n_poses,)."""
@@ -94,28 +88,13 @@ def situation_at(robot: Robot, poses: Poses, force_N: FloatArray | None = None) 
 
 
 def solve_task(
-    robot: Robot, poses: Poses, task: Task, *, seeks_better: bool = True, is_quick: bool = False
+    robot: Robot, poses: Poses, task: Task, *, proves_best: bool = False
 ) -> tuple[Solution, PulleyRun]:
-    """Solve poses (...), flattened to one axis, of which the task tells `situation_at`.
-
-    Other branches are tried where nothing is found, unless it ``is_quick``, and, if it
-    ``seeks_better``, where one may be better than what is. Where none keeps the largest sag, the
-    answer is one that does not.
-    """
+    """Solve poses (...), flattened to one axis, of which the task tells `situation_at`."""
     checkpoint()
     flat = poses.flat
-    solution, run = _solve_over_pulleys(
-        robot, flat, task, is_thorough=False, rates_branches=seeks_better
-    )
+    solution, run = _solve_over_pulleys(robot, flat, task, proves_best)
     _judge_unsolved(robot, flat, solution, task)
-    limits_sag = robot.is_redundant and task.sag_max is not None
-    hangs = np.zeros(len(flat.position_m), dtype=np.bool_)
-    if limits_sag and not seeks_better:
-        hangs = _let_hang(robot, flat, solution, run, task, seeks_better)
-    if not is_quick:
-        _try_other_branches(robot, flat, solution, run, task, ~hangs)
-    if limits_sag:
-        _let_hang(robot, flat, solution, run, task, seeks_better, ~hangs)
     if robot.pulley_radius_m == 0.0:
         return solution, run
     shape = (*poses.shape, robot.n_cables)
@@ -124,19 +103,14 @@ def solve_task(
 
 
 def _solve_over_pulleys(
-    robot: Robot,
-    flat: Poses,
-    task: Task,
-    *,
-    is_thorough: bool,
-    rates_branches: bool,
-    is_open: bool = False,
-    turns: int = _FEW_TURNS,
+    robot: Robot, flat: Poses, task: Task, proves_best: bool, turns: int = _FEW_TURNS
 ) -> tuple[Solution, PulleyRun]:
     """Solve with a few turns, and those poses that have not come to rest again with more."""
     from designer.kernel.batch import solve_batch
 
     ones = np.ones(robot.n_cables)
+    stays_in_plane = robot.pulley_radius_m > 0.0 and robot.cable_load_direction is None
+    pulleys_m = upright_exit_points_m(robot) if stays_in_plane else None
 
     def solve(run: PulleyRun) -> tuple[Solution, FloatArray, float]:
         solution = solve_batch(
@@ -147,16 +121,17 @@ def _solve_over_pulleys(
             task.strength_m * ones,
             task.inverse_weight_m_per_N,
             sag_max=task.sag_max,
-            is_thorough=is_thorough,
-            is_open=is_open,
-            rates_branches=rates_branches,
+            pulleys_m=pulleys_m,
+            proves_best=proves_best,
         )
         if robot.pulley_radius_m == 0.0:  # no cable leaves at an angle that matters
             return solution, np.empty(0), 0.0
         with np.errstate(invalid="ignore"):  # forces are infinite at infinite section
             weight = solution.weight_N_per_m[:, None] * task.relative_weights
             downward = weight * solution.length_m - solution.force_z_N
-        return solution, np.arctan2(downward, solution.force_x_N), 0.0
+        slope_rad = np.arctan2(downward, solution.force_x_N)
+        is_solved = (solution.verdict == Verdict.SOLVED)[:, None]
+        return solution, np.where(is_solved, slope_rad, solution.leaving_rad), 0.0
 
     solution, run, gap_rad = over_pulleys(robot, flat, solve, turns)
     if turns >= MOST_ITERATIONS:  # what is said of poses that did not settle is taken back
@@ -168,106 +143,20 @@ def _solve_over_pulleys(
         return solution, run
     at = np.flatnonzero(gap_rad > STILL_RAD)
     if len(at) > 0:
-        again = _solve_over_pulleys(
-            robot,
-            flat.part(at),
-            task.part(at),
-            is_thorough=is_thorough,
-            rates_branches=rates_branches,
-            turns=max(2 * turns, _FEW_TURNS),
+        again, its_run = _solve_over_pulleys(
+            robot, flat.part(at), task.part(at), proves_best, max(2 * turns, _FEW_TURNS)
         )
-        _replace(solution, run, at, *again)
+        for field in fields(solution):
+            getattr(solution, field.name)[at] = getattr(again, field.name)
+        run.exit_points_m[at], run.wrap_m[at] = its_run.exit_points_m, its_run.wrap_m
     return solution, run
 
 
-def _replace(
-    solution: Solution,
-    run: PulleyRun,
-    at: IntArray,
-    by: Solution,
-    its_run: PulleyRun,
-    chosen: BoolArray | slice = slice(None),
-) -> None:
-    """Write what is chosen of the answers for the poses `at`, and their run, over the former."""
-    for field in fields(solution):
-        getattr(solution, field.name)[at[chosen]] = getattr(by, field.name)[chosen]
-    if run.exit_points_m.ndim > 2:
-        run.exit_points_m[at[chosen]] = its_run.exit_points_m[chosen]
-        run.wrap_m[at[chosen]] = its_run.wrap_m[chosen]
-
-
-def _try_other_branches(
-    robot: Robot,
-    flat: Poses,
-    solution: Solution,
-    run: PulleyRun,
-    task: Task,
-    among: BoolArray,
-) -> None:
-    """Search ``among`` poses again where nothing is found or another branch is rated better.
-
-    Of branches that are as good, one without cables far longer than their chords is preferred.
-
-    Writes what is better into the solution and the run of the cables.
-    """
-    is_open = are_open(solution.verdict)
-    at = np.flatnonzero(among & (is_open | (solution.potential > _WORTH_A_SEARCH)))
-    if len(at) == 0 or np.any(task.inverse_weight_m_per_N == 0.0):
-        return
-    poses = flat.part(at)
-    again, its_run = _solve_over_pulleys(
-        robot,
-        poses,
-        task.part(at),
-        is_thorough=True,
-        is_open=robot.pulley_radius_m == 0.0 and bool(is_open[at].all()),
-        rates_branches=False,
-        turns=1,
-    )
-    if robot.pulley_radius_m == 0.0:  # a proof is for points that stay where they are
-        solution.verdict[at[again.verdict == Verdict.NO_FINITE_CABLE]] = Verdict.NO_FINITE_CABLE
-    solved = again.verdict == Verdict.SOLVED
-    if not solved.any():
-        return
-    if task.inverse_weight_m_per_N is None:
-        burden, before = again.weight_N_per_m, solution.weight_N_per_m[at]
-    else:
-        burden, before = again.load_factor, solution.load_factor[at]
-    chord = cable_geometry(robot, poses).chord_m
-    was_long, is_long = (
-        (length > LONG * chord).any(axis=1) for length in (solution.length_m[at], again.length_m)
-    )
-    tauter = was_long & ~is_long & (burden <= (1.0 + _SAME) * before)
-    lighter = burden < (1.0 - _SAME) * before
-    better = solved & (lighter | tauter | (solution.verdict[at] != Verdict.SOLVED))
-    _replace(solution, run, at, again, its_run, better)
-
-
-def _let_hang(
-    robot: Robot,
-    flat: Poses,
-    solution: Solution,
-    run: PulleyRun,
-    task: Task,
-    seeks_better: bool,
-    among: BoolArray | bool = True,
-) -> BoolArray:
-    """Solve poses that have no answer again, whatever the sag: what is found exceeds it.
-
-    Where no better branch is sought, before other branches are tried within the limit, which takes
-    long and rarely finds one. Tells which poses (n_poses,) these were.
-    """
-    hangs = are_open(solution.verdict) & among
-    at = np.flatnonzero(hangs)
-    if len(at) > 0:
-        slack = replace(task.part(at), sag_max=None)
-        poses = flat.part(at)
-        _replace(solution, run, at, *solve_task(robot, poses, slack, seeks_better=seeks_better))
-    return hangs
-
-
 def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -> None:
-    """Replace the verdicts of poses without a solution by what is proved of them."""
+    """Say of poses without a solution what is proved of any cables, straight or sagging.
+
+    What the solver has proved of taut ones stands unless that is more.
+    """
     from designer.kernel.batch import refuse_batch
 
     unsolved = np.flatnonzero(solution.verdict != Verdict.SOLVED)
@@ -277,14 +166,25 @@ def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -
     points = straight_run(robot, poses).exit_points_m
     situation = task.situation.part(unsolved).starting_at(points)
     is_near, least_N = np.zeros(len(unsolved), dtype=np.bool_), robot.tension_min_N
+    bows_out = False
     if robot.pulley_radius_m > 0.0:  # the cone bounds a cable only beyond its pulley
         level = level_geometry(robot, poses)
         is_near |= (level.horizontal_distance_m < 2.0 * robot.pulley_radius_m).any(axis=1)
-        if robot.cable_load_direction is not None:
+        bows_out = robot.cable_load_direction is not None
+        if bows_out:
             situation, least_N = _between_tangents(robot, level, situation), 0.0
-    verdict, _, _ = refuse_batch(situation, least_N if robot.is_redundant else 0.0)
+    verdict, wrench, _ = refuse_batch(situation, least_N if robot.is_redundant else 0.0)
+    of_solver = solution.verdict[unsolved]
+    says_more = ~np.isin(verdict, (Verdict.OUTSIDE_HULL, Verdict.RANK_DEFICIENT))
+    says_more &= (of_solver != Verdict.NOT_CONVERGED) & (not bows_out)
+    verdict = np.where(says_more, of_solver, verdict)
     verdict[is_near] = Verdict.NOT_CONVERGED
     solution.verdict[unsolved] = verdict
+    solution.wrench[unsolved] = np.where(
+        are_open(verdict)[:, None],
+        np.nan,
+        np.where(says_more[:, None], solution.wrench[unsolved], wrench),
+    )
 
 
 def _between_tangents(robot: Robot, level: CableGeometry, situation: Situation) -> Situation:

@@ -83,7 +83,7 @@ class BestTurns(Following):
         places = np.hstack([positions, self.turns_rad(positions)[:, 0]])[np.isfinite(best)]
         if not len(places):
             return 0.0
-        largest = self._diameter_m(places, is_quick=False).max()
+        largest = self._diameter_m(places).max()
         return max(float(largest / best[np.isfinite(best)].max()) - 1.0, 0.0)
 
     @property
@@ -143,7 +143,7 @@ class BestTurns(Following):
     def _diameter_m(self, places: FloatArray, *, is_quick: bool = True) -> FloatArray:
         """Return what places (n, 6) need [m]; infinite where nothing holds or it is left out."""
         poses = Poses.at(places)
-        sizing = size_poses(self.robot, poses, self.material, seeks_better=False, is_quick=is_quick)
+        sizing = size_poses(self.robot, poses, self.material)
         demand = demand_of(sizing.diameter_m, sizing.statics, self.hangs_below)
         return np.where(np.isneginf(demand), np.inf, demand)
 

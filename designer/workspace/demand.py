@@ -64,11 +64,9 @@ def diameter_demand(
     material: Material | MaterialsByPose,
     hangs_below: HangsBelow,
     places: FloatArray,
-    *,
-    seeks_better: bool = True,
 ) -> FloatArray:
     """Needed diameter [m]; inf where no cable of the family will do."""
-    sizing = size_poses(robot, Poses.at(places), material, seeks_better=seeks_better)
+    sizing = size_poses(robot, Poses.at(places), material)
     return demand_of(sizing.diameter_m, sizing.statics, hangs_below)
 
 
@@ -77,21 +75,17 @@ def rope_demand(
     cable: Cable | Cables,
     hangs_below: HangsBelow,
     places: FloatArray,
-    *,
-    seeks_better: bool = True,
 ) -> FloatArray:
     """What a given cable meets (n, 1 + 2 n_cables): largest tension [N], lengths, negated lengths.
 
     Lengths are unstrained [m]; the largest of the negated ones is the shortest.
     """
-    statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
+    statics = solve_sagging(robot, Poses.at(places), cable)
     tension = demand_of(statics.largest_tension_N, statics, hangs_below)
     return np.column_stack([tension, length_demand(statics, np.isfinite(tension))])
 
 
-def tension_demand(
-    loaded: Loaded, hangs_below: HangsBelow, places: FloatArray, *, seeks_better: bool = True
-) -> FloatArray:
+def tension_demand(loaded: Loaded, hangs_below: HangsBelow, places: FloatArray) -> FloatArray:
     """Largest tension in a load case [N]; inf where the platform is not held, or finds no rest.
 
     On kept lengths that after it has settled; which poses are left out is told by how the cables
@@ -99,17 +93,17 @@ def tension_demand(
     """
     poses = Poses.at(places)
     if loaded.keeps_lengths:
-        cable_loss = settled(loaded, poses, seeks_better=seeks_better)
+        cable_loss = settled(loaded, poses)
         left_out = is_left_out(cable_loss.before, hangs_below)
         return np.where(left_out, -np.inf, cable_loss.largest_tension_N)
-    statics = solve_sagging(loaded.robot, poses, loaded.cable, seeks_better=seeks_better)
+    statics = solve_sagging(loaded.robot, poses, loaded.cable)
     return demand_of(statics.largest_tension_N, statics, hangs_below)
 
 
-def settled(loaded: Loaded, poses: Poses, *, seeks_better: bool = True) -> CableLoss:
+def settled(loaded: Loaded, poses: Poses) -> CableLoss:
     """Return what becomes of poses (n_poses,) in a load case in which lengths are kept."""
     kept = loaded.lost_cable, loaded.growth
-    return settle(loaded.robot, poses, loaded.cable, *kept, seeks_better=seeks_better)
+    return settle(loaded.robot, poses, loaded.cable, *kept)
 
 
 def length_demand(statics: Statics, counts: BoolArray) -> FloatArray:
@@ -123,8 +117,6 @@ def massless_demand(
     material: Material,
     hangs_below: HangsBelow,
     places: FloatArray,
-    *,
-    seeks_better: bool = True,
 ) -> FloatArray:
     """Largest tension of straight weightless cables [N]; inf where they do not hold the platform.
 
@@ -135,7 +127,7 @@ def massless_demand(
     if hangs_below == "include":
         tension = solve_massless(robot, Poses.at(places)).largest_tension_N
         return np.where(np.isnan(tension), np.inf, tension)
-    sizing = size_poses(robot, Poses.at(places), material, seeks_better=seeks_better)
+    sizing = size_poses(robot, Poses.at(places), material)
     return massless_demand_of(sizing, hangs_below)
 
 

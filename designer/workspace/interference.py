@@ -21,7 +21,7 @@ from designer.workspace.clearance import (
     names_of,
 )
 from designer.workspace.demand import is_counted, is_left_out
-from designer.workspace.refine import LIGHT, ONE_CLIMB, places_of, refine, refine_over_branches
+from designer.workspace.refine import LIGHT, ONE_CLIMB, places_of, refine
 
 MOST_SAMPLES = 1000
 """Poses that are looked at before the search between them."""
@@ -105,7 +105,7 @@ def where_pairs_are_near(
     """
 
     def nearness(places: FloatArray) -> FloatArray:
-        statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=False)
+        statics = solve_sagging(robot, Poses.at(places), cable)
         distance = distances_among_cables_m(statics)
         distance[is_left_out(statics, workspace.hangs_below)] = np.nan
         return -np.nan_to_num(distance, nan=np.inf)
@@ -133,16 +133,16 @@ def survey(
     def nearest(
         among: Callable[[Statics], Clearance], sampled: Clearance, starts: FloatArray
     ) -> Nearest | None:
-        def clearance(places: FloatArray, seeks_better: bool = True) -> Clearance:
+        def clearance(places: FloatArray) -> Clearance:
             poses = Poses.at(places)
-            return counted(among, solve_sagging(robot, poses, cable, seeks_better=seeks_better))
+            return counted(among, solve_sagging(robot, poses, cable))
 
-        def nearness(places: FloatArray, *, seeks_better: bool) -> FloatArray:
-            return -np.nan_to_num(clearance(places, seeks_better).distance_m, nan=np.inf)
+        def nearness(places: FloatArray) -> FloatArray:
+            return -np.nan_to_num(clearance(places).distance_m, nan=np.inf)
 
         if np.isnan(sampled.distance_m).all():
             return None
-        (worst,) = refine_over_branches(workspace.space, nearness, starts, LIGHT)
+        (worst,) = refine(workspace.space, nearness, starts, LIGHT)
         closest = clearance(worst.place[None])
         first, second = (int(number) for number in closest.pair[0])
         return Nearest(

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -124,72 +123,32 @@ def refine_each(
     proved. A search ends at the first place where any of its demands is infinite.
 
     ``starts`` (n, n_coordinates), of each search, are samples of the space that ask for much, such
-    as `Pool.places`.
+    as `Pool.places`. Of more than twelve searches six are made in full, and the others from their
+    ends as well.
     """
-    return _PoseSearch(space, demand, effort or Effort(), len(starts)).run(starts)
+    if not starts:
+        return []
+    if effort is not None or len(starts) <= _MANY:
+        return _PoseSearch(space, demand, effort or Effort(), len(starts)).run(starts)
+    every = np.arange(len(starts))
+    scouts = every[:: -(-len(every) // _SCOUTS)]
+    followers = np.setdiff1d(every, scouts)
+
+    def among(numbers: IntArray, effort: Effort, known: FloatArray) -> dict[int, list[Worst]]:
+        own_starts = [np.concatenate([starts[k], known]) for k in numbers]
+        search = _PoseSearch(space, lambda at, k: demand(at, numbers[k]), effort, len(numbers))
+        return dict(zip(numbers.tolist(), search.run(own_starts), strict=True))
+
+    worsts = among(scouts, Effort(), np.empty((0, space.n_coordinates)))
+    ends = np.concatenate([places_of(of_search) for of_search in worsts.values()])
+    worsts |= among(followers, _FOLLOWING, ends)
+    return [worsts[k] for k in every.tolist()]
 
 
 def places_of(worsts: Iterable[Worst]) -> FloatArray:
     """Return where the largest demands are (n, n_coordinates), without those at no place."""
     places = np.array([worst.place for worst in worsts])
     return np.asarray(places[np.isfinite(places).all(axis=1)])
-
-
-def refine_over_branches(
-    space: Space, demand: Demand, starts: FloatArray, effort: Effort | None = None
-) -> list[Worst]:
-    """Return the largest of each of several demands; see `refine_each_over_branches`."""
-
-    def demand_of_each(places: FloatArray, _: IntArray, *, seeks_better: bool) -> FloatArray:
-        return demand(places, seeks_better=seeks_better)
-
-    return refine_each_over_branches(space, demand_of_each, [starts], effort)[0]
-
-
-def refine_each_over_branches(
-    space: Space, demand: Demand, starts: Sequence[FloatArray], effort: Effort | None = None
-) -> list[list[Worst]]:
-    """Return what `refine_each` does, of solutions that may have better branches.
-
-    To look for better branches takes a hundred times as long. Where it changes none of the starts,
-    a search does without, and its results are computed again with it: a better branch asks for
-    less, so that a largest diameter or tension stands if it stands there. If anything has changed,
-    the whole search is made again with it. The demand takes ``seeks_better``, whether to look for
-    them. Of more than twelve searches six are made in full, and the others from their ends as well.
-    """
-    plain, thorough = (partial(demand, seeks_better=seeks) for seeks in (False, True))
-
-    def changed(places: Sequence[FloatArray], among: IntArray) -> IntArray:
-        """Return which of some searches have other demands at their places with it."""
-        count = [len(of_search) for of_search in places]
-        search = np.repeat(among, count)
-        if not len(search):
-            return search
-        at = np.concatenate(places)
-        differs = plain(at, search) != thorough(at, search)
-        return np.unique(search[differs.reshape(len(at), -1).any(axis=1)])
-
-    def searched(
-        demand: Demand, among: IntArray, effort: Effort | None, known: FloatArray
-    ) -> dict[int, list[Worst]]:
-        """Search for what has these numbers: of many a few in full, which tell the others."""
-        if not len(among):
-            return {}
-        is_many = effort is None and len(among) > _MANY
-        scouts = among[:: -(-len(among) // _SCOUTS)] if is_many else among
-        own_starts = [np.concatenate([starts[k], known]) for k in scouts]
-        worsts = refine_each(space, lambda at, k: demand(at, scouts[k]), own_starts, effort)
-        ends = np.concatenate([known, *map(places_of, worsts)])
-        others = searched(demand, np.setdiff1d(among, scouts), _FOLLOWING, ends)
-        return dict(zip(scouts.tolist(), worsts, strict=True)) | others
-
-    every, nowhere = np.arange(len(starts)), np.empty((0, space.n_coordinates))
-    hard = changed(starts, every)
-    easy = np.setdiff1d(every, hard)
-    extremes = searched(plain, easy, effort, nowhere)
-    hard = np.union1d(hard, changed([places_of(extremes[k]) for k in easy.tolist()], easy))
-    extremes |= searched(thorough, hard, effort, nowhere)
-    return [extremes[k] for k in every.tolist()]
 
 
 def worst_over_samples(
@@ -204,7 +163,7 @@ def worst_over_samples(
 
     For a ``count`` of searches; over so many samples at ``most``. Starts are those that ask for
     most of the first demand, and of each search the places (n, n_coordinates) in ``known``; see
-    `refine_each_over_branches`.
+    `refine_each`.
     """
     sampled = workspace if most is None else workspace.with_fewer_samples(most)
     pools = [Pool(workspace.space) for _ in range(count)]
@@ -217,7 +176,7 @@ def worst_over_samples(
     starts = [pool.places for pool in pools]
     if known is not None:
         starts = [np.concatenate(places) for places in zip(starts, known, strict=True)]
-    return refine_each_over_branches(workspace.space, demand, starts)
+    return refine_each(workspace.space, demand, starts)
 
 
 def _foot_of_cliff(value: FloatArray, trials: FloatArray) -> FloatArray:

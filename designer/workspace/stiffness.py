@@ -16,7 +16,7 @@ from designer.statics.inverse import solve_sagging
 from designer.statics.modes import knows_inertia, platform_frequencies_Hz
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.workspace.demand import is_counted
-from designer.workspace.refine import LIGHT, refine_over_branches
+from designer.workspace.refine import LIGHT, refine
 
 MOST_SAMPLES, FEW_SAMPLES = 2000, 500
 """Poses that are looked at before the search between them, for a design and for each candidate."""
@@ -70,11 +70,11 @@ def survey_stiffness(
     counts = ~np.isneginf(demand[:, 0])
     if np.isneginf(demand[:, 1]).all():
         return None
-    softest, stiffest = refine_over_branches(workspace.space, displacement, thinned)
+    softest, stiffest = refine(workspace.space, displacement, thinned)
     slowest = []
     if knows_inertia(robot, robot.platform):  # each by itself, since a frequency takes longer
         slowness = partial(_slowness, robot, workspace, cable)
-        slowest = refine_over_branches(workspace.space, slowness, thinned)
+        slowest = refine(workspace.space, slowness, thinned)
     return StiffnessSurvey(
         samples=int(counts.sum()),
         unstable=int(np.isposinf(demand[:, 0]).sum()),
@@ -99,12 +99,12 @@ def smallest_stiffness_N_per_m(
     """
     thinned = workspace.thinned(FEW_SAMPLES)
 
-    def softness(places: FloatArray, *, seeks_better: bool = True) -> FloatArray:
-        demand = displacement_demand(robot, workspace, cable, places, seeks_better=seeks_better)
+    def softness(places: FloatArray) -> FloatArray:
+        demand = displacement_demand(robot, workspace, cable, places)
         return demand[:, 0]
 
     if searched:
-        (worst,) = refine_over_branches(workspace.space, softness, thinned, LIGHT)
+        (worst,) = refine(workspace.space, softness, thinned, LIGHT)
         softest = worst.demand
     else:
         softest = float(softness(thinned).max(initial=-np.inf))
@@ -116,14 +116,12 @@ def displacement_demand(
     workspace: Workspace,
     cable: Cable | Cables,
     places: FloatArray,
-    *,
-    seeks_better: bool = True,
 ) -> FloatArray:
     """Displacement under a unit force, and negated, (n, 2) [m/N].
 
     Inf and -inf where the platform would not stay, both -inf where the pose does not count.
     """
-    statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
+    statics = solve_sagging(robot, Poses.at(places), cable)
     counts = is_counted(statics, workspace.hangs_below)
     displacement = largest_displacement_m_per_N(statics)
     stays = counts & np.isfinite(displacement)
@@ -136,11 +134,9 @@ def _slowness(
     workspace: Workspace,
     cable: Cable | Cables,
     places: FloatArray,
-    *,
-    seeks_better: bool = True,
 ) -> FloatArray:
     """Return the lowest frequency, negated (n,) [Hz]; -inf where the pose does not count."""
-    statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
+    statics = solve_sagging(robot, Poses.at(places), cable)
     counts = is_counted(statics, workspace.hangs_below)
     density = cable.linear_density_kg_per_m
     frequencies = platform_frequencies_Hz(statics, robot.platform, density)

@@ -28,7 +28,7 @@ from designer.workspace.demand import (
 )
 from designer.workspace.hanging import HangingCables, look_at
 from designer.workspace.pool import Pool
-from designer.workspace.refine import refine_over_branches
+from designer.workspace.refine import refine
 from designer.workspace.result import Census, Extreme, WorkspaceMap
 from designer.workspace.store import sweep_file
 
@@ -122,7 +122,7 @@ def _summarise(
     ratio = np.nan
     if example is None and gathered.sampled is not None:
         demand = partial(diameter_demand, robot, material, workspace.hangs_below)
-        (worst,) = refine_over_branches(workspace.space, demand, gathered.starts.places)
+        (worst,) = refine(workspace.space, demand, gathered.starts.places)
         if np.isfinite(worst.demand):
             pose = Poses.at(worst.place)
             tension = float(size_poses(robot, pose, material).statics.largest_tension_N)
@@ -133,7 +133,7 @@ def _summarise(
     starts = gathered.massless_starts.places
     if with_massless and len(starts):
         demand = partial(massless_demand, robot, material, workspace.hangs_below)
-        (worst,) = refine_over_branches(workspace.space, demand, starts)
+        (worst,) = refine(workspace.space, demand, starts)
         if np.isfinite(worst.demand):
             diameter = material.diameter_for_tension_m(worst.demand)
             massless = Extreme(worst.place, diameter, worst.demand)

@@ -20,33 +20,21 @@ ROPES = "selection: {grades: all}\n"
 
 
 @pytest.mark.parametrize(
-    ("given", "of_products", "of_family"),
-    [
-        ("", 0.2, None),
-        (", sag: 20 %", 0.2, 0.2),
-        (", sag: 0.05", 0.05, 0.05),
-        (", sag: none", None, None),
-    ],
+    ("given", "limit"),
+    [("", 0.2), (", sag: 20 %", 0.2), (", sag: 0.05", 0.05), (", sag: 50 %", 0.5)],
 )
-def test_sag_limits_products_and_the_family_only_if_given(
-    study_of: Callable[[str], Study],
-    given: str,
-    of_products: float | None,
-    of_family: float | None,
+def test_sag_limits_products_and_the_family(
+    study_of: Callable[[str], Study], given: str, limit: float
 ) -> None:
-    study = study_of(STUDY % given)
-    assert study.workspace is not None
-    assert study.workspace.sag_max == of_products
-    assert study.workspace.family_sag_max == of_family
-    robot = as_built_by(study).robot  # without a selection all cables are of the family
-    assert (robot.sag_max, robot.family_sag_max) == (of_family, of_family)
-    robot = as_built_by(study_of(STUDY % given + ROPES)).robot
-    assert (robot.sag_max, robot.family_sag_max) == (of_products, of_family)
+    for selection in ("", ROPES):
+        study = study_of(STUDY % given + selection)
+        assert study.workspace is not None
+        assert study.workspace.sag_max == as_built_by(study).robot.sag_max == limit
 
 
 @pytest.mark.parametrize(
     ("given", "problem"),
-    [("0", "out of range"), ("11", "out of range"), ("2 m", "has the unit"), ("any", "is not")],
+    [("0", "out of range"), ("51 %", "out of range"), ("2 m", "has the unit"), ("none", "is not")],
 )
 def test_what_is_no_sag_is_refused(
     faults_of: Callable[[str], list[Fault]], given: str, problem: str

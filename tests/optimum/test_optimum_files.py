@@ -100,7 +100,9 @@ def test_no_design_that_holds_is_no_flat_optimum(tmp_path: Path) -> None:
     assert not found.holds
     line = next(one for one in trust_lines(found) if one.startswith("No start came to a design"))
     count = len(found.searched.trials) - 1  # without the robot as given
-    assert f"of {count}\N{NO-BREAK SPACE}designs: the configured pose: no cables hold it." in line
+    assert (
+        f"of {count}\N{NO-BREAK SPACE}designs: the configured pose: no taut cables hold it." in line
+    )
     report = optimum_report(found, found.optimised.provenance.created)
     assert len(pictures(report)) == 1  # the robot: there is nothing to show of an objective
 

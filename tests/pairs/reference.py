@@ -362,8 +362,6 @@ class Equations:
 def solve(problem: Problem, pose: Pose, starts: int = 4, seed: int = 0) -> State | None:
     """Return the balance whose largest tension over the allowable one is smallest; None without."""
     found = solutions(problem, pose, starts, seed)
-    if not found and problem.sag_max is not None and problem.n > len(problem.freedoms):
-        found = solutions(replace(problem, sag_max=None), pose, starts, seed)
     return min(found, key=lambda one: one.utilisation, default=None)
 
 

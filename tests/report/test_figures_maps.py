@@ -322,7 +322,7 @@ class TestMaps:
             ("exclude", "worst pose"),
             ("partly", "no finite cable, for example here"),
             ("found_by_search", "no finite cable, for example here"),
-            ("outside", "no cables hold it, for example here"),
+            ("outside", "no taut cables hold it, for example here"),
             ("all_left_out", "left out"),
         ],
     )

@@ -64,7 +64,7 @@ def test_pose_outside_the_hull(analyses: dict[str, Analysis]) -> None:
     page = page_of(analyses["pose_outside"])
     assert page.verdict.title == "No"
     text = said(page)
-    assert "At (250.00, −60.00, −50.00) m no cables can hold the platform" in text
+    assert "At (250.00, −60.00, −50.00) m no tensions of taut cables hold the platform" in text
     assert "inside their outline" in text
     assert "stronger" not in text
 

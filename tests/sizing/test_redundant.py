@@ -30,6 +30,7 @@ from designer.sizing.scp import _Problem, size_by_scp
 from designer.statics.distribution import distribute_evenly
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import solve_sagging
+from designer.statics.shape import sag_ratio
 
 WEIGHTS = (1.0, 30.0, 60.0)
 CASES = {
@@ -84,7 +85,10 @@ def test_sizing_is_that_of_slsqp_on_the_papers_equations() -> None:
     poses = cogiro_poses(4, 7)
     for weights in (1.0, 60.0):
         sizing = size_poses(COGIRO, poses, steel(weights))
-        for k in range(4):
+        # The paper's equations know no largest sag.
+        free = np.flatnonzero(sag_ratio(sizing.statics).max(axis=-1) < 0.99 * COGIRO.sag_max)
+        assert len(free) >= 2
+        for k in free:
             nlp = size_by_nlp(COGIRO, one(poses, k), steel(weights))
             assert nlp.has_converged
             assert sizing.diameter_m[k] == pytest.approx(nlp.diameter_m, rel=1e-8)
@@ -336,7 +340,9 @@ def test_a_least_tension_is_kept_and_where_it_governs_no_more(weights) -> None:
         least = tension_along_N(statics).min(axis=(-2, -1))
         assert least.min() > FACADE.tension_min_N * (1.0 - 1e-9)
         if weights == 1.0:
-            assert least.max() < FACADE.tension_min_N * (1.0 + 1e-9)
+            at_sag = sag_ratio(statics).max(axis=-1) > 0.999 * FACADE.sag_max
+            assert at_sag.sum() <= 1
+            assert (least[~at_sag] < FACADE.tension_min_N * (1.0 + 1e-9)).all()
         # The lowest point of a heavy cable lies between those where its tension was taken.
         between = 1e-9 if weights == 1.0 else 1e-6
         assert statics.least_tension_N.min(axis=-1) == pytest.approx(least, rel=between)

@@ -131,12 +131,13 @@ def test_smallest_largest_tension_within_the_sag_is_that_of_slsqp(case: str, lim
 
 @pytest.mark.parametrize("limit", [0.05, 0.2])
 def test_thinnest_cable_within_the_sag_is_that_of_convex_programmes(limit: float) -> None:
-    robot = replace(FOUR, family_sag_max=limit)
+    robot = replace(FOUR, sag_max=limit)
     poses, material = four_poses(6, 4), steel(2.0)
     sizing = size_poses(robot, poses, material)
-    keeps = (sag_ratio(sizing.statics) <= limit).all(axis=1)
-    assert keeps.any()
-    for k in np.flatnonzero(keeps):
+    held = np.flatnonzero(sizing.statics.is_solved)
+    assert len(held) >= 3
+    assert sag_ratio(sizing.statics)[held].max() <= limit
+    for k in held:
         theirs = size_by_scp(robot, one(poses, k), material)
         assert theirs.has_converged
         assert sizing.diameter_m[k] == pytest.approx(theirs.diameter_m, rel=1e-5)
@@ -161,44 +162,37 @@ def can_keep(poses: Poses, cable: Cable, limit: float) -> BoolArray:
 
 
 @pytest.mark.slow
-def test_slack_cables_are_pulled_where_that_holds_and_no_pose_is_lost() -> None:
+def test_a_pose_is_held_where_all_cables_can_be_taut() -> None:
     poses, cable = four_poses(300, 1), steel(2.0).cable(0.01)
-    slack = solve_sagging(FOUR, poses, cable)
+    slack = solve_sagging(replace(FOUR, sag_max=0.5), poses, cable)
     tight = solve_sagging(replace(FOUR, sag_max=0.05), poses, cable)
-    assert sag_ratio(slack).max() > 0.1
-    assert tight.is_solved.all()
-    keeps = (sag_ratio(tight) <= 0.05).all(axis=1)
-    assert keeps[can_keep(poses, cable, 0.048)].all()
-    assert not keeps[~can_keep(poses, cable, 0.052)].any()
-    assert 100 < keeps.sum() < 300
-    assert (tight.largest_tension_N >= slack.largest_tension_N * (1.0 - 1e-9)).all()
+    held = tight.is_solved
+    assert sag_ratio(tight)[held].max() <= 0.05
+    assert held[can_keep(poses, cable, 0.048)].all()
+    assert not held[~can_keep(poses, cable, 0.052)].any()
+    assert 100 < held.sum() < 300
+    assert (tight.verdict[~held] == Verdict.OUTSIDE_HULL).all()
+    least = slack.largest_tension_N[held] * (1.0 - 1e-9)
+    assert (tight.largest_tension_N[held] >= least).all()
 
 
-def test_what_no_internal_forces_keep_is_solved_without_and_exceeds_it() -> None:
-    """A light platform on heavy cables, all of them from above."""
+def test_a_light_platform_does_not_tighten_heavy_cables_from_above() -> None:
     light = Robot(FOUR.exit_points_m, Platform(1.0), sag_max=0.02)
-    poses, cable = four_poses(20, 2), steel().cable(0.01)
-    found = solve_sagging(light, poses, cable)
-    assert found.is_solved.any()
-    assert sag_ratio(found)[found.is_solved].max(axis=1).min() > 0.02
-    np.testing.assert_array_equal(
-        found.verdict == Verdict.SOLVED,
-        solve_sagging(replace(light, sag_max=None), poses, cable).is_solved,
-    )
+    statics = solve_sagging(light, four_poses(20, 2), steel().cable(0.01))
+    assert (statics.verdict == Verdict.OUTSIDE_HULL).all()
 
 
 @pytest.mark.parametrize("diameter_m", [0.004, 0.01, 0.04])
 def test_what_a_size_meets_is_what_its_poses_meet(diameter_m: float) -> None:
-    """Other branches are tried where one does not serve: thin, fitting and hopelessly heavy."""
+    """A thin, a fitting and a hopelessly heavy cable."""
     robot = replace(FOUR, sag_max=0.05)
     poses, cable = four_poses(200, 5), steel(2.0).cable(diameter_m)
     statics = solve_sagging(robot, poses, cable)
-    keeps = (sag_ratio(statics) <= 0.05 * (1.0 + 1e-9)).all(axis=1)
-    cells = (~keeps).astype(int)
-    meets = meet(robot, poses, [cable], cells, 2, leaves_out_hanging=False)
+    cells = np.zeros(200, dtype=int)
+    meets = meet(robot, poses, [cable], cells, 1, leaves_out_hanging=False)
     assert meets.counted[0] == statics.is_solved.sum()
-    assert not meets.failed[0][statics.is_solved].any()
-    if keeps.any():
+    assert np.array_equal(meets.failed[0], ~statics.is_solved)
+    if statics.is_solved.any():
         used = statics.largest_tension_N / cable.allowable_tension_N
-        assert meets.utilisation[0, 0] == pytest.approx(used[keeps].max(), rel=1e-9)
+        assert meets.utilisation[0, 0] == pytest.approx(np.nanmax(used), rel=1e-9)
         assert meets.overloaded[0] == (used > 1.0).sum()

@@ -64,7 +64,7 @@ def test_each_point_is_what_the_study_says(tmp_path: Path) -> None:
         assert float(found["pose.optimum.diameter_m"][point]) == float(alone.sizing.diameter_m)
     above = found.isel(point=1)  # above its anchors no cable holds it
     assert np.isnan(above["pose.optimum.diameter_m"])
-    assert above["reason"].item() == "the configured pose: no cables hold it"
+    assert above["reason"].item() == "the configured pose: no taut cables hold it"
 
 
 def test_a_result_that_some_points_do_not_have_takes_nothing_else_along(tmp_path: Path) -> None:

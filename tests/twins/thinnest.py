@@ -8,7 +8,9 @@ a = μ - δ and b = μ + δ. With h = horizontal force over weight per length an
     upward pull h sinh a, tensions h cosh a and h cosh b.
 
 Unknown are log h of every cable and c, the load over the weight per length; SLSQP makes c large.
-Nothing is shared with the compiled solvers but the robot.
+Of a given cable c is known, and SLSQP makes the largest tension over the strength small. With
+cables to spare no h is below that of the largest sag. Nothing is shared with the compiled solvers
+but the robot.
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ from scipy.optimize import linprog, minimize
 
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
 from designer.model.robot import Poses, Robot
+from designer.physics import catenary
 
 STARTS = 14
 _STEEPEST = 3.0  # of δ: no cable more than about three times as long as its horizontal distance
@@ -78,10 +81,19 @@ def _cables(h: np.ndarray, X: np.ndarray, D: np.ndarray, k: float) -> np.ndarray
 class Problem:
     """One pose, forces over the strength; see the head of the file."""
 
-    def __init__(self, robot: Robot, position: np.ndarray, turn: np.ndarray, material: Material):
+    def __init__(
+        self,
+        robot: Robot,
+        position: np.ndarray,
+        turn: np.ndarray,
+        material: Material,
+        weight_N_per_m: float | None = None,
+        exit_points_m: np.ndarray | None = None,
+    ):
         pose = Poses.at(position, None if robot.is_point_mass else turn)
         up = robot.upright
-        chord = (robot.exit_points_m - pose.attachment_points_m(robot)) @ up.T
+        exits = robot.exit_points_m if exit_points_m is None else exit_points_m
+        chord = (exits - pose.attachment_points_m(robot)) @ up.T  # all in the base frame until here
         lever = (pose.attachment_points_m(robot) - pose.position_m) @ up.T
         self.reach = float(np.abs(lever).sum(axis=1).max()) or 1.0
         self.rows = robot.balance_rows
@@ -91,7 +103,7 @@ class Problem:
         self.level, self.lift = self.wrench(lever, plan), self.wrench(lever, np.array([0, 0, 1.0]))
         force = robot.pull_N[:3]
         centre = up @ pose.rotation @ robot.platform.centre_of_mass_m
-        moment = robot.pull_N[3:] + np.cross(centre, [0, 0, robot.weight_N])
+        moment = robot.pull_N[3:] + np.cross(centre, robot.centre_pull_N)
         load = np.concatenate([force, moment / self.reach])[self.rows]
         self.size = float(np.abs(load).max())
         self.load = load / self.size
@@ -99,12 +111,34 @@ class Problem:
         self.strength = material.strength_length_m
         self.kappa = material.elastic_compliance_per_m
         self.least = robot.tension_min_N / self.size if robot.is_redundant else 0.0
+        self.given = (
+            None if weight_N_per_m is None else self.size / (weight_N_per_m * self.strength)
+        )
+        self.low = np.log(self.X / (2 * _STEEPEST))
+        if robot.is_redundant:
+            self.low = np.maximum(self.low, np.log(self._of_sag(robot.sag_max)))
         self.last: tuple[bytes, tuple[np.ndarray, ...]] = (b"", ())
 
     def wrench(self, lever: np.ndarray, force: np.ndarray) -> np.ndarray:
         force = np.broadcast_to(force, lever.shape)
         both = np.hstack([force, np.cross(lever, force) / self.reach])
         return both[:, self.rows].T
+
+    def _of_sag(self, sag: float) -> np.ndarray:
+        """Return the least h at which no cable sags more than this share of its chord."""
+        EA = 1.0 / self.kappa
+        low, high = self.X / (2 * _STEEPEST), 1e3 * self.L
+        for _ in range(100):
+            h = np.sqrt(low * high)
+            length, force_z = catenary.length_and_force_z(h / self.X, self.X, self.D, EA, 1.0)
+            deep = catenary.sag_m(length, h, force_z, EA, 1.0, self.X, self.D)
+            slack = ~(deep <= sag * self.L)
+            low, high = np.where(slack, h, low), np.where(slack, high, h)
+        return high
+
+    def c(self, z: np.ndarray) -> float:
+        """Return the load over the weight per length, over the strength."""
+        return float(z[-1]) if self.given is None else self.given
 
     def cables(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
         """Upward pull, both end tensions, length, the slopes of the first three in log h, and the
@@ -117,28 +151,33 @@ class Problem:
 
     def balance(self, z: np.ndarray) -> np.ndarray:
         up = self.cables(z[:-1])[0]
-        return (self.level @ np.exp(z[:-1]) + self.lift @ up) / self.strength - z[-1] * self.load
+        return (self.level @ np.exp(z[:-1]) + self.lift @ up) / self.strength - self.c(
+            z
+        ) * self.load
 
     def balance_slope(self, z: np.ndarray) -> np.ndarray:
         slope = self.cables(z[:-1])[4]
         columns = (self.level * np.exp(z[:-1]) + self.lift * slope) / self.strength
-        return np.column_stack([columns, -self.load])
+        return np.column_stack([columns, -self.load * (self.given is None)])
 
     def room(self, z: np.ndarray) -> np.ndarray:
         _, low, top, *_, least, _ = self.cables(z[:-1])
-        found = [1 - low / self.strength, 1 - top / self.strength]
+        most = 1.0 if self.given is None else z[-1]
+        found = [most - low / self.strength, most - top / self.strength]
         if self.least > 0:
-            found.append(least / self.strength - z[-1] * self.least)
+            found.append(least / self.strength - self.c(z) * self.least)
         return np.concatenate(found)
 
     def room_slope(self, z: np.ndarray) -> np.ndarray:
         *_, low, top, _, least = self.cables(z[:-1])
         n = len(low)
-        zero = np.zeros((n, 1))
-        found = [np.hstack([np.diag(-low / self.strength), zero])]
-        found.append(np.hstack([np.diag(-top / self.strength), zero]))
+        is_sizing = self.given is None
+        in_top = np.full((n, 1), 0.0 if is_sizing else 1.0)
+        found = [np.hstack([np.diag(-low / self.strength), in_top])]
+        found.append(np.hstack([np.diag(-top / self.strength), in_top]))
         if self.least > 0:
-            found.append(np.hstack([np.diag(least / self.strength), zero - self.least]))
+            in_least = np.full((n, 1), -self.least if is_sizing else 0.0)
+            found.append(np.hstack([np.diag(least / self.strength), in_least]))
         return np.vstack(found)
 
     def straight(self) -> tuple[np.ndarray, float]:
@@ -175,13 +214,14 @@ class Problem:
         return found
 
     def solve(self, start: np.ndarray) -> tuple[float, np.ndarray, float]:
-        low = np.log(self.X / (2 * _STEEPEST))
-        high = np.log(2 * self.strength * self.X / self.L + self.X)
+        low, sign = self.low, -1.0 if self.given is None else 1.0
+        most = 2 if self.given is None else 1e4 * max(1.0, self.given)
+        high = np.maximum(np.log(most * self.strength * self.X / self.L + self.X), low + 1.0)
         with np.errstate(all="ignore"):
             answer = minimize(
-                lambda z: -z[-1],
+                lambda z: sign * z[-1],
                 np.clip(start, np.append(low, 0), np.append(high, np.inf)),
-                jac=lambda z: -np.eye(z.size)[-1],
+                jac=lambda z: sign * np.eye(z.size)[-1],
                 method="SLSQP",
                 bounds=[*zip(low, high, strict=True), (0.0, None)],
                 constraints=[
@@ -195,6 +235,31 @@ class Problem:
         return float(z[-1]), z, float(worst)
 
 
+def least_utilisation(
+    robot: Robot,
+    position: np.ndarray,
+    turn: np.ndarray,
+    material: Material,
+    weight_N_per_m: float,
+    rng: np.random.Generator,
+    starts: int = STARTS,
+    exit_points_m: np.ndarray | None = None,
+) -> tuple[float, np.ndarray]:
+    """Return the least largest tension over the strength that any start ends in, and the pulls h.
+
+    NaN where none ends in an equilibrium. Of a cable of the family with this weight per length.
+    """
+    problem = Problem(robot, position, turn, material, weight_N_per_m, exit_points_m)
+    best, at = np.inf, np.full(robot.n_cables, np.nan)
+    assert problem.given is not None
+    for start in problem.starts(starts, rng):
+        start[-1] = np.exp(start[:-1]).max() / problem.strength
+        f, z, worst = problem.solve(start)
+        if worst < _BALANCED * max(1.0, problem.given) and f < best:
+            best, at = f, np.exp(z[:-1])
+    return (best if np.isfinite(best) else np.nan), at
+
+
 def thinnest(
     robot: Robot,
     position: np.ndarray,
@@ -202,9 +267,10 @@ def thinnest(
     material: Material,
     rng: np.random.Generator,
     starts: int = STARTS,
+    exit_points_m: np.ndarray | None = None,
 ) -> Thinnest:
     """Return the thinnest cable that any of the starts ends in."""
-    problem = Problem(robot, position, turn, material)
+    problem = Problem(robot, position, turn, material, exit_points_m=exit_points_m)
     best, at, residual = 1e-6, None, np.nan
     for start in problem.starts(starts, rng):
         c, z, worst = problem.solve(start)

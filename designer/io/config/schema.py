@@ -33,10 +33,10 @@ from designer.model.measurements import LogColumn, LogSession, Measurements, Rea
 from designer.model.motion import Ends
 from designer.model.price_list import PriceList
 from designer.model.region import Region, Sampling
-from designer.model.robot import Poses
+from designer.model.robot import SAG_MAX, Poses
 from designer.model.rope_life import RopeLife
 from designer.model.space import Orientations
-from designer.model.workspace import SAG_MAX, HangsBelow, Workspace
+from designer.model.workspace import HangsBelow, Workspace
 from designer.study import CableGroup, DocumentControl, Objective, RopeLimits, Selection
 from designer.units import describe
 
@@ -155,8 +155,8 @@ class WorkspaceSection(Section):
     floor: fields.Length | None = None
     """Height that no cable may hang below."""
     sag: fields.Sag = config_field("Largest sag", SAG_MAX)
-    """Largest distance of a cable from its chord, over the chord. Of ropes to buy, 20 % unless
-    given; of the configured cable only if given. The word none lifts it."""
+    """Largest distance of a cable from its chord, over the chord, at most 50 %. With cables to
+    spare, a pose in which some cable would have to sag more is not held."""
     proof: fields.ProofTime = config_field("Time for the proof", 20.0)
     """How long to try to prove that the chosen rope holds in all poses; 0 for not at all."""
     orientation: regions.FollowingSection | None = None
@@ -190,7 +190,6 @@ class WorkspaceSection(Section):
             clearance_m=self.clearance,
             floor_m=self.floor,
             sag_max=self.sag,
-            family_sag_max=self.sag if "sag" in self.model_fields_set else None,
             proof_s=0.0 if self.path is not None else self.proof,
             orientations=orientations,
         )

@@ -25,7 +25,7 @@ from designer.statics.geometry import cable_geometry
 from designer.statics.inverse import Statics, solve_sagging
 from designer.workspace.demand import is_left_out, length_demand
 from designer.workspace.pool import Pool
-from designer.workspace.refine import refine_over_branches
+from designer.workspace.refine import refine
 
 _NUDGE = 1e-3
 """Relative step in the weight of a rope: the slope guides, and need not be exact."""
@@ -67,7 +67,7 @@ def verify_groups(
     if utilisation.max() > 1.0:
         return GroupVerification(at, utilisation, longest, np.full_like(longest, np.nan), False)
     starts = np.unique(np.concatenate([pool.places for pool in pools]), axis=0)
-    worst = refine_over_branches(space, demand, starts)
+    worst = refine(space, demand, starts)
     demands = np.array([extreme.demand for extreme in worst])
     at = np.array([extreme.place for extreme in worst[: len(members)]])
     groups, lengths = np.split(demands, [len(members)])
@@ -80,11 +80,9 @@ def _demand(
     cables: Cables,
     members: Members,
     places: FloatArray,
-    *,
-    seeks_better: bool = True,
 ) -> FloatArray:
     """What cables meet (n, n_groups + n_cables): utilisation of each group, lengths [m]."""
-    statics = solve_sagging(robot, Poses.at(places), cables, seeks_better=seeks_better)
+    statics = solve_sagging(robot, Poses.at(places), cables)
     left_out = is_left_out(statics, workspace.hangs_below)
     utilisation = utilisation_of(statics, cables, left_out)
     groups = np.column_stack([utilisation[:, cable].max(axis=1) for cable in members])
