@@ -11,7 +11,7 @@ from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.rectangle import Rectangle
 from designer.model.region import ring
-from designer.model.sobol import sobol
+from designer.model.sobol import halton, sobol
 from designer.model.space import Orientations, Space, named_pose
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
@@ -140,6 +140,12 @@ def test_samples_are_the_sequence_of_scipy(dimensions: int, seed: int) -> None:
     ours = sobol(dimensions, seed, 256)
     for _ in range(4):
         np.testing.assert_array_equal(next(ours), theirs.random(256))
+
+
+@pytest.mark.parametrize("dimensions", [1, 2, 3])
+def test_orientations_spread_as_the_sequence_of_scipy(dimensions: int) -> None:
+    theirs = qmc.Halton(dimensions, scramble=False).random(201)[1:]
+    np.testing.assert_array_equal(halton(dimensions, 200), theirs)
 
 
 def test_outlines_from_above_and_from_the_side() -> None:

@@ -38,8 +38,9 @@ class Provenance:
         """Return the provenance of an analysis that starts now, with what the study asks for."""
         names = ["numpy", "scipy", "numba", "xarray", "pyvista", "matplotlib", "plutoprint"]
         if study is not None:
-            has_groups = study.selection is not None and bool(study.selection.groups)
-            if has_groups or study.robot.is_redundant:  # chosen by mathematical programmes
+            if study.robot.is_redundant:  # solved again by convex programmes
+                names.append("clarabel")
+            if study.selection is not None and study.selection.groups:
                 names += ["cvxpy", "highspy"]
         return cls(
             version=__version__,

@@ -93,7 +93,7 @@ def verify(name: str, material: Material, sizing: Sizing) -> list[SecondAnswer]:
     """Find a needed diameter again by an optimiser, and where its cables end by quadrature.
 
     The optimiser is SciPy's SLSQP on the unknowns of Riehl et al., ICRA 2010, section IV.C, or for
-    more cables than degrees of freedom a sequence of convex programmes in CVXPY; neither knows
+    more cables than degrees of freedom a sequence of convex programmes by Clarabel; neither knows
     pulleys.
 
     Parameters
@@ -114,7 +114,7 @@ def _diameter(name: str, material: Material, sizing: Sizing) -> SecondAnswer:
     robot, pose = sizing.statics.robot, sizing.statics.poses
     ours = float(sizing.diameter_m)
     theirs, remark = np.nan, "did not converge"
-    method = "convex programmes (CVXPY)" if robot.is_redundant else "SLSQP (SciPy)"
+    method = "convex programmes (Clarabel)" if robot.is_redundant else "SLSQP (SciPy)"
     try:
         if robot.is_redundant:
             from designer.sizing.scp import size_by_scp

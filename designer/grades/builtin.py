@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+import os
+import pickle
+from contextlib import suppress
 from functools import cache
+from hashlib import sha256
+from itertools import chain
 from pathlib import Path
+
+from platformdirs import user_cache_path
 
 from designer.grades.files import read_grades
 from designer.grades.grade import Grade
@@ -21,6 +28,47 @@ def register_grades() -> list[Path | Grade]:
 @cache
 def _grades() -> tuple[Path | Grade, ...]:
     """Read them once; the folder itself where a file is faulty, so that the fault is told."""
-    files, faults = read_grades(data_folder("catalog"))
-    shipped = (data_folder("catalog"),) if faults else tuple(file.grade for file in files)
-    return (*shipped, *standard_ropes())
+    folder = data_folder("catalog")
+    kept = _kept_file(folder)
+    grades = _read(kept)
+    if grades is None:
+        files, faults = read_grades(folder)
+        if faults:
+            return (folder, *standard_ropes())
+        grades = tuple(file.grade for file in files)
+        _keep(kept, grades)
+    return (*grades, *standard_ropes())
+
+
+def _kept_file(folder: Path) -> Path:
+    """Return where grades are kept as they were read, since to check them takes a second.
+
+    Its name is a digest of the grade files and of all that reads them.
+    """
+    package = Path(__file__).parents[1]
+    readers = (package.glob(f"{room}*.py") for room in ("", "grades/", "documents/"))
+    digest = sha256()
+    for source in sorted(chain(folder.rglob("*.yaml"), *readers)):
+        digest.update(source.name.encode() + source.read_bytes())
+    cache_folder = user_cache_path("cdpr-designer", appauthor=False)
+    return cache_folder / f"grades-{digest.hexdigest()[:32]}"
+
+
+def _read(kept: Path) -> tuple[Grade, ...] | None:
+    """Return what is kept; None where nothing is, or it is damaged."""
+    with suppress(OSError):
+        digest, data = kept.read_bytes()[:32], kept.read_bytes()[32:]
+        if sha256(data).digest() == digest:
+            grades: tuple[Grade, ...] = pickle.loads(data)
+            return grades
+    return None
+
+
+def _keep(kept: Path, grades: tuple[Grade, ...]) -> None:
+    """Keep the grades, if the disk takes them; the file appears whole."""
+    data = pickle.dumps(grades)
+    trial = kept.with_suffix(f".{os.getpid()}")
+    with suppress(OSError):
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        trial.write_bytes(sha256(data).digest() + data)
+        trial.replace(kept)

@@ -1,6 +1,6 @@
-"""The scrambled Sobol sequence, number for number that of SciPy.
+"""The scrambled Sobol sequence and that of Halton, number for number those of SciPy.
 
-SciPy has it in `scipy.stats`, which takes longer to import than a whole workspace to solve.
+SciPy has them in `scipy.stats`, which takes longer to import than a whole workspace to solve.
 """
 
 from __future__ import annotations
@@ -37,6 +37,22 @@ def sobol(dimensions: int, seed: int, chunk: int) -> Iterator[FloatArray]:
     for number in range(2**_BITS // chunk):
         first = scrambled[:, number * chunk >> np.arange(_BITS) & 1 == 1]
         yield (points ^ np.bitwise_xor.reduce(first, axis=1)) / 2.0**_BITS
+
+
+def halton(dimensions: int, count: int) -> FloatArray:
+    """Return the first numbers of the sequence but 0 (count, dimensions), up to three dimensions.
+
+    The digits of 1, 2, 3 … to the base of a prime, mirrored at the point; Halton, Numerische
+    Mathematik 2 (1960).
+    """
+    number = np.arange(1, count + 1)[:, None] + np.zeros((1, dimensions), int)
+    base, points = np.array([2, 3, 5])[:dimensions], np.zeros(number.shape)
+    share = np.ones(dimensions)
+    while number.any():
+        share = share / base
+        points += number % base * share
+        number //= base
+    return points
 
 
 def _directions(dimensions: int) -> np.ndarray[tuple[int, int], np.dtype[np.int64]]:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from designer import checked
 from designer.arrays import BoolArray, FloatArray, IntArray, finite_array, frozen_array
 from designer.model.region import Region
+from designer.model.sobol import halton
 from designer.model.turning import Following
 
 _APART = 1e-7
@@ -52,15 +53,13 @@ class Orientations:
     @classmethod
     def within(cls, low_rad: ArrayLike, high_rad: ArrayLike) -> Orientations:
         """Return a range: its middle, its corners, and `FILLING` orientations spread inside it."""
-        from scipy.stats import qmc
-
         low, high = finite_array("low_rad", low_rad, 3), finite_array("high_rad", high_rad, 3)
         free = high > low
         if (high < low).any() or not free.any():
             raise ValueError("high_rad must not be below low_rad, and be above it somewhere")
         bounds = frozen_array([low, high])
         corners = np.array(list(product((0.0, 1.0), repeat=int(free.sum()))))
-        inner = qmc.Halton(int(free.sum()), scramble=False).random(FILLING + 1)[1:]
+        inner = halton(int(free.sum()), FILLING)
         share = np.zeros((1 + len(corners) + FILLING, 3))
         share[:, free] = np.concatenate([np.full((1, corners.shape[1]), 0.5), corners, inner])
         return cls(frozen_array(low + share * (high - low)), bounds)

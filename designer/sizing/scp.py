@@ -1,9 +1,9 @@
 r"""The thinnest cable of a redundant robot by sequential convex programs: the readable reference.
 
-One pose at a time, in CVXPY. Each cable of unit weight has one free pull :math:`p_i`, horizontal
-force over weight and horizontal distance; its length, its upward pull :math:`v_i`, its top
-tension :math:`T_i` and the least tension in it :math:`\tau_i` follow. With c the inverse of the
-weight per length,
+One pose at a time, each programme by Clarabel. Each cable of unit weight has one free pull
+:math:`p_i`, horizontal force over weight and horizontal distance; its length, its upward pull
+:math:`v_i`, its top tension :math:`T_i` and the least tension in it :math:`\tau_i` follow. With c
+the inverse of the weight per length,
 
 .. math::  \max c \quad \text{s.t.} \quad \sum_i W_i(p_i) = c\,w, \quad T_i(p_i) \le \sigma/(g\rho),
            \quad \tau_i(p_i) \ge c\,t_{min}, \quad p_i \ge p_i^{sag}.
@@ -18,10 +18,7 @@ Engineering 17, 2016, for the method.
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
-from functools import cache
-from typing import Any
 
 import numpy as np
 
@@ -127,7 +124,7 @@ def size_by_scp(robot: Robot, pose: Poses, material: Material, *, max_turns: int
         If straight cables cannot hold the pose, if the robot has pulleys, or if a library that
         solves the programmes is not installed.
     """
-    missing = missing_library("cvxpy", "clarabel")
+    missing = missing_library("clarabel")
     if missing:
         raise ValueError(missing)
     if robot.pulley_radius_m != 0.0:
@@ -286,11 +283,9 @@ class _Problem:
         )
 
 
-def _pulls_of_sag(sag_max: float | None, geometry: CableGeometry, material: Material) -> FloatArray:
-    """Return the scaled pulls (n,) at which cables sag as far as they may; zero for any sag."""
+def _pulls_of_sag(sag_max: float, geometry: CableGeometry, material: Material) -> FloatArray:
+    """Return the scaled pulls (n,) at which cables sag as far as they may."""
     X, D, chord = geometry.horizontal_distance_m, geometry.drop_m, geometry.chord_m
-    if sag_max is None:
-        return np.zeros_like(chord)
     EA = 1.0 / material.elastic_compliance_per_m
     low, high = np.full_like(chord, _SLACKEST), np.full_like(chord, 1.0 + 1.0 / sag_max)
     for _ in range(_HALVINGS):
@@ -301,56 +296,45 @@ def _pulls_of_sag(sag_max: float | None, geometry: CableGeometry, material: Mate
     return np.asarray(high * chord / material.strength_length_m)
 
 
-@cache
-def _programme(dof: int, n: int) -> dict[str, Any]:
-    """State the convex programme once, with parameters for what changes from turn to turn."""
-    import cvxpy as cp
-
-    step, c, gap = cp.Variable(n), cp.Variable(), cp.Variable(nonneg=True)
-    data = {name: cp.Parameter(n) for name in ("tension", "tension_y", "lowest", "lowest_y")}
-    data |= {name: cp.Parameter(n, nonneg=True) for name in ("bend", "least", "trust", "room")}
-    data |= {name: cp.Parameter(dof) for name in ("rest", "load")}
-    data["wrench_y"] = cp.Parameter((dof, n))
-    balance = data["rest"] + data["wrench_y"] @ step - c * data["load"]
-    constraints = [
-        balance <= gap,
-        -balance <= gap,
-        data["tension"] + cp.multiply(data["tension_y"], step) - 1.0 <= gap,
-        c * data["least"] - data["lowest"] - cp.multiply(data["lowest_y"], step) <= gap,
-        step <= data["trust"],
-        step >= -data["room"],
-    ]
-    curved = 0.5 * cp.sum_squares(cp.multiply(data["bend"], step))
-    problem = cp.Problem(cp.Minimize(curved - c + _PRICE * gap), constraints)
-    return {"data": data, "step": step, "c": c, "balance": constraints[:2], "problem": problem}
-
-
 def _solve(
     problem: _Problem, state: _State, y: FloatArray, multiplier: FloatArray, trust: float
 ) -> _Turn | None:
-    import cvxpy as cp
+    """Solve the convex programme of a turn in the step of the pulls, c and the violation.
 
-    programme = _programme(len(problem.load), len(y))
-    values = {
-        "rest": state.wrench.sum(axis=1),
-        "bend": np.sqrt(np.maximum(multiplier @ state.wrench_yy, 0.0)),
-        "load": problem.load,
-        "least": problem.least,
-        "trust": trust * y,
-        "room": np.clip(y - problem.floor, 0.0, trust * y),
-    }
-    for name, parameter in programme["data"].items():
-        parameter.value = values[name] if name in values else getattr(state, name)
-    try:
-        with warnings.catch_warnings():
-            # Of less than full accuracy; the residuals of the answer tell.
-            warnings.simplefilter("ignore", UserWarning)
-            programme["problem"].solve(
-                solver=cp.CLARABEL, tol_gap_abs=1e-12, tol_gap_rel=1e-12, tol_feas=1e-12
-            )
-    except cp.SolverError:
+    Every row but those of the step may be missed by the violation, at its price.
+    """
+    import clarabel
+    from scipy.sparse import csc_matrix, diags
+
+    dof, n = state.wrench_y.shape
+    one, none = np.ones((n, 1)), np.zeros((n, 1))
+    balance = np.column_stack([state.wrench_y, -problem.load])
+    rest = state.wrench.sum(axis=1)
+    room = np.clip(y - problem.floor, 0.0, trust * y)
+    rows = [
+        (np.hstack([balance, -np.ones((dof, 1))]), -rest),
+        (np.hstack([-balance, -np.ones((dof, 1))]), rest),
+        (np.hstack([np.diag(state.tension_y), none, -one]), 1.0 - state.tension),
+        (np.hstack([-np.diag(state.lowest_y), problem.least[:, None], -one]), state.lowest),
+        (np.hstack([np.eye(n), none, none]), trust * y),
+        (np.hstack([-np.eye(n), none, none]), room),
+        (-np.eye(n + 2)[-1:], np.zeros(1)),
+    ]
+    A, b = (np.concatenate(part) for part in zip(*rows, strict=True))
+    bend = np.maximum(multiplier @ state.wrench_yy, 0.0)
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-12
+    solution = clarabel.DefaultSolver(
+        csc_matrix(diags([*bend, 0.0, 0.0])),
+        np.concatenate([np.zeros(n), [-1.0, _PRICE]]),
+        csc_matrix(A),
+        b,
+        [clarabel.NonnegativeConeT(len(b))],
+        settings,
+    ).solve()
+    # Of less than full accuracy too; the residuals of the answer tell.
+    if str(solution.status) not in ("Solved", "AlmostSolved"):
         return None
-    if programme["step"].value is None:
-        return None
-    above, below = (constraint.dual_value for constraint in programme["balance"])
-    return _Turn(y + programme["step"].value, float(programme["c"].value), above - below)
+    x, dual = np.array(solution.x), np.array(solution.z)
+    return _Turn(y + x[:n], float(x[n]), dual[:dof] - dual[dof : 2 * dof])
