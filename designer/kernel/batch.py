@@ -77,6 +77,7 @@ def solve_batch(
     sag_max: float,
     pulleys_m: FloatArray | None = None,
     proves_best: bool = False,
+    decides: bool = False,
 ) -> Solution:
     """Solve the statics of poses (n_poses,), or size the cables if no weight is given.
 
@@ -96,6 +97,8 @@ def solve_batch(
         Exit points above the edges of the pulleys, in the frame of the situation [m].
     proves_best : bool
         Whether to prove of a robot with cables to spare that no thinner taut cable holds a pose.
+    decides : bool
+        Whether poses of a robot that leaves no choice are ones that Newton has left open.
 
     Raises
     ------
@@ -127,12 +130,13 @@ def solve_batch(
         np.zeros(count, dtype=np.bool_),
     )
     asked = situation, figures, plain(inverse_weight.reshape(-1)), out
-    if robot.is_redundant:
+    if robot.is_redundant or decides:
         *given, out = asked
         share_out(solve_redundant_range, count, _SLOW_SHARE, *given, proves_best, out)
     else:
         share_out(solve_range, count, _SHARE, *asked)
-        _decide_unsolved(robot, *asked)
+        if robot.has_one_branch and inverse_weight_m_per_N is None:
+            share_out(refuse_points_range, count, _SHARE, situation, figures, out)
     if np.any(relative_weights != 1.0):  # the kernel's forces are those of cables of weight w
         out.cables[..., [answer.FORCE_X, answer.FORCE_Z]] *= relative_weights[..., None]
     return Solution(
@@ -149,37 +153,6 @@ def solve_batch(
         leaving_rad=out.leaving,
         is_best=out.is_best,
     )
-
-
-def _decide_unsolved(
-    robot: Robot,
-    situation: Situation,
-    figures: CableFigures,
-    inverse_weight: FloatArray,
-    out: answer.Answers,
-) -> None:
-    """Decide the poses of a robot without spare cables that Newton left without an answer."""
-    if (inverse_weight == 0.0).any():  # at infinite section nothing holds a load
-        return
-    if robot.has_one_branch and inverse_weight[0] < 0.0:
-        share_out(refuse_points_range, len(out.verdict), _SHARE, situation, figures, out)
-    at = np.flatnonzero(out.verdict == answer.NOT_CONVERGED)
-    if len(at) == 0:  # and the solver need not even be compiled
-        return
-
-    def of_part(values: FloatArray) -> FloatArray:
-        return plain(values[at]) if len(values) > 1 else values
-
-    figures = figures._replace(
-        kappa=of_part(figures.kappa),
-        weights=of_part(figures.weights),
-        strength=of_part(figures.strength),
-    )
-    part = answer.Answers(*(values[at] for values in out))  # type: ignore[arg-type]
-    given = situation.part(at), figures, of_part(inverse_weight), False, part
-    share_out(solve_redundant_range, len(at), _SLOW_SHARE, *given)
-    out.cables[at], out.poses[at], out.verdict[at] = part.cables, part.poses, part.verdict
-    out.wrench[at], out.leaving[at] = part.wrench, part.leaving
 
 
 def solve_massless_batch(

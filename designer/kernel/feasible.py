@@ -256,7 +256,7 @@ def _pull_at_least(pose: Pose, i: int, low: float, least: float) -> float:
     return low
 
 
-@element
+@inner
 def _least_at(pose: Pose, i: int, p: float) -> tuple[float, float]:
     """Return the least tension anywhere in a cable over its weight, and about its slope."""
     straight = np.sqrt(pose.cables[X2, i])
@@ -287,7 +287,7 @@ def _pull_at_strength(pose: Pose, i: int, low: float) -> float:
     return float(p * (1.0 + _OUTWARD))
 
 
-@element
+@inner
 def _hang(pose: Pose, i: int, p: float) -> tuple[float, float, float, float, float, float, float]:
     """Return length, lift, its slope, top tension, its slope, and distance and drop of the ends.
 

@@ -93,8 +93,15 @@ def solve_task(
     """Solve poses (...), flattened to one axis, of which the task tells `situation_at`."""
     checkpoint()
     flat = poses.flat
-    solution, run = _solve_over_pulleys(robot, flat, task, proves_best)
+    solution, run = _solve_over_pulleys(robot, flat, task, proves_best=proves_best)
     _judge_unsolved(robot, flat, solution, task)
+    at = np.flatnonzero(are_open(solution.verdict))
+    if robot.is_square and len(at) > 0 and np.all(task.inverse_weight_m_per_N != 0.0):
+        # Most are proved to be impossible before the solver of taut cables need be compiled.
+        some, part = flat.part(at), task.part(at)
+        again, its_run = _solve_over_pulleys(robot, some, part, decides=True)
+        _judge_unsolved(robot, some, again, part)
+        _replace(solution, run, at, again, its_run)
     if robot.pulley_radius_m == 0.0:
         return solution, run
     shape = (*poses.shape, robot.n_cables)
@@ -103,7 +110,7 @@ def solve_task(
 
 
 def _solve_over_pulleys(
-    robot: Robot, flat: Poses, task: Task, proves_best: bool, turns: int = _FEW_TURNS
+    robot: Robot, flat: Poses, task: Task, turns: int = _FEW_TURNS, **wishes: bool
 ) -> tuple[Solution, PulleyRun]:
     """Solve with a few turns, and those poses that have not come to rest again with more."""
     from designer.kernel.batch import solve_batch
@@ -122,7 +129,7 @@ def _solve_over_pulleys(
             task.inverse_weight_m_per_N,
             sag_max=task.sag_max,
             pulleys_m=pulleys_m,
-            proves_best=proves_best,
+            **wishes,
         )
         if robot.pulley_radius_m == 0.0:  # no cable leaves at an angle that matters
             return solution, np.empty(0), 0.0
@@ -144,12 +151,20 @@ def _solve_over_pulleys(
     at = np.flatnonzero(gap_rad > STILL_RAD)
     if len(at) > 0:
         again, its_run = _solve_over_pulleys(
-            robot, flat.part(at), task.part(at), proves_best, max(2 * turns, _FEW_TURNS)
+            robot, flat.part(at), task.part(at), max(2 * turns, _FEW_TURNS), **wishes
         )
-        for field in fields(solution):
-            getattr(solution, field.name)[at] = getattr(again, field.name)
-        run.exit_points_m[at], run.wrap_m[at] = its_run.exit_points_m, its_run.wrap_m
+        _replace(solution, run, at, again, its_run)
     return solution, run
+
+
+def _replace(
+    solution: Solution, run: PulleyRun, at: IntArray, by: Solution, its_run: PulleyRun
+) -> None:
+    """Write the answers for the poses `at`, and their run, over the former."""
+    for field in fields(solution):
+        getattr(solution, field.name)[at] = getattr(by, field.name)
+    if run.exit_points_m.ndim > 2:
+        run.exit_points_m[at], run.wrap_m[at] = its_run.exit_points_m, its_run.wrap_m
 
 
 def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -> None:

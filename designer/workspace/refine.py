@@ -188,8 +188,8 @@ def _foot_of_cliff(value: FloatArray, trials: FloatArray) -> FloatArray:
     ascending = np.sort(np.column_stack([trials, value]), axis=1)
     with np.errstate(invalid="ignore"):
         gap = np.nan_to_num(np.diff(ascending), nan=0.0, posinf=np.inf)
-    rows, widest = np.arange(len(gap)), gap.argmax(axis=1)
-    above = ascending[:, -1] - ascending[rows, widest + 1]
+        rows, widest = np.arange(len(gap)), gap.argmax(axis=1)
+        above = ascending[:, -1] - ascending[rows, widest + 1]
     return np.where(gap[rows, widest] > _STEEP * above, ascending[rows, widest], -np.inf)
 
 
@@ -351,7 +351,8 @@ class _PoseSearch:
         rank = np.empty(len(order), dtype=np.int64)
         rank[order] = np.arange(len(order)) - np.searchsorted(kind[order], kind[order])
         best = self._best[climbs.search, climbs.extreme]
-        is_close = climbs.value > best - _CLOSE * np.abs(best)
+        with np.errstate(invalid="ignore"):  # of a best at infinity none is close
+            is_close = climbs.value > best - _CLOSE * np.abs(best)
         return np.asarray(is_close & (rank < self._effort.revisited))
 
     def _in_reach(self, climbs: Climbs) -> IntArray:
@@ -362,7 +363,9 @@ class _PoseSearch:
         """
         best = self._best[climbs.search, climbs.extreme]
         is_open = self._has_border[climbs.search]
-        return np.flatnonzero(is_open | (climbs.value >= best - _CLOSE * np.abs(best)))
+        with np.errstate(invalid="ignore"):
+            is_close = climbs.value >= best - _CLOSE * np.abs(best)
+        return np.flatnonzero(is_open | is_close)
 
     def _finalists(self, climbs: Climbs) -> Climbs:
         """Leave out climbs that have come to the same place as a better one, or stay far behind."""

@@ -33,8 +33,8 @@ class StiffnessSurvey:
     unstable : int
         Those of them in which the platform would not stay.
     softest_m_per_N, stiffest_m_per_N : float
-        Largest and smallest displacement under a unit force in its worst direction [m/N]; the
-        former inf where the platform would not stay somewhere.
+        Largest displacement under a unit force in its worst direction, and the smallest of the
+        samples [m/N]; the former inf where the platform would not stay somewhere.
     softest_place, stiffest_place : array (n_coordinates,)
         Where [m, rad].
     lowest_frequency_Hz : float or None
@@ -67,21 +67,21 @@ def survey_stiffness(
     displacement = partial(displacement_demand, robot, workspace, cable)
     thinned = workspace.thinned(MOST_SAMPLES)
     demand = displacement(thinned)
-    counts = ~np.isneginf(demand[:, 0])
-    if np.isneginf(demand[:, 1]).all():
+    if not np.isfinite(demand).any():
         return None
-    softest, stiffest = refine(workspace.space, displacement, thinned)
+    (softest,) = refine(workspace.space, displacement, thinned)
+    stiffest = int(np.where(np.isfinite(demand), demand, np.inf).argmin())
     slowest = []
-    if knows_inertia(robot, robot.platform):  # each by itself, since a frequency takes longer
+    if knows_inertia(robot, robot.platform):
         slowness = partial(_slowness, robot, workspace, cable)
         slowest = refine(workspace.space, slowness, thinned)
     return StiffnessSurvey(
-        samples=int(counts.sum()),
-        unstable=int(np.isposinf(demand[:, 0]).sum()),
+        samples=int((~np.isneginf(demand)).sum()),
+        unstable=int(np.isposinf(demand).sum()),
         softest_m_per_N=softest.demand,
-        stiffest_m_per_N=-stiffest.demand,
+        stiffest_m_per_N=float(demand[stiffest]),
         softest_place=softest.place,
-        stiffest_place=stiffest.place,
+        stiffest_place=thinned[stiffest],
         lowest_frequency_Hz=-slowest[0].demand if slowest else None,
         lowest_frequency_place=slowest[0].place if slowest else None,
     )
@@ -98,35 +98,26 @@ def smallest_stiffness_N_per_m(
     `designer.statics.stiffness`.
     """
     thinned = workspace.thinned(FEW_SAMPLES)
-
-    def softness(places: FloatArray) -> FloatArray:
-        demand = displacement_demand(robot, workspace, cable, places)
-        return demand[:, 0]
-
+    displacement = partial(displacement_demand, robot, workspace, cable)
     if searched:
-        (worst,) = refine(workspace.space, softness, thinned, LIGHT)
+        (worst,) = refine(workspace.space, displacement, thinned, LIGHT)
         softest = worst.demand
     else:
-        softest = float(softness(thinned).max(initial=-np.inf))
+        softest = float(displacement(thinned).max(initial=-np.inf))
     return float("nan") if np.isneginf(softest) else 1.0 / softest
 
 
 def displacement_demand(
-    robot: Robot,
-    workspace: Workspace,
-    cable: Cable | Cables,
-    places: FloatArray,
+    robot: Robot, workspace: Workspace, cable: Cable | Cables, places: FloatArray
 ) -> FloatArray:
-    """Displacement under a unit force, and negated, (n, 2) [m/N].
+    """Displacement under a unit force (n,) [m/N].
 
-    Inf and -inf where the platform would not stay, both -inf where the pose does not count.
+    Inf where the platform would not stay, -inf where the pose does not count.
     """
     statics = solve_sagging(robot, Poses.at(places), cable)
     counts = is_counted(statics, workspace.hangs_below)
-    displacement = largest_displacement_m_per_N(statics)
-    stays = counts & np.isfinite(displacement)
-    softest = np.where(stays, displacement, np.where(counts, np.inf, -np.inf))
-    return np.column_stack([softest, np.where(stays, -displacement, -np.inf)])
+    displacement = np.nan_to_num(largest_displacement_m_per_N(statics), nan=np.inf)
+    return np.where(counts, displacement, -np.inf)
 
 
 def _slowness(

@@ -211,7 +211,7 @@ def check(study: Study, workspace: Workspace, count: int, rng: np.random.Generat
         compare(names[k], extremes[k], _column(asked, k), count if k == 0 else count // 10)
     soft = survey_stiffness(robot, workspace, cable)
     if soft is not None:
-        displacement = _column(partial(displacement_demand, robot, workspace, cable), 0)
+        displacement = partial(displacement_demand, robot, workspace, cable)
         compare("softest", soft.softest_m_per_N, displacement, _SLOW_SAMPLES["stiffness"])
     if rng.random() < 0.2:
         near = survey(robot, workspace, cable, 0.1).worst
