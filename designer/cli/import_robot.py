@@ -127,6 +127,8 @@ def _require_valid(
 def _tell(path: Path, robot: ForeignRobot, missing: tuple[Gap, ...]) -> None:
     load = "a point mass" if robot.attachments_m is None else "a platform"
     typer.echo(f"{path} written: {robot.name}, {len(robot.exit_points_m)} cables on {load}.")
+    for remarks in robot.remarks.values():
+        typer.echo("\n".join(f"  {remark}" for remark in remarks))
     if not missing:
         typer.echo(f"Next:  designer size {shlex.quote(str(path))}")
         return

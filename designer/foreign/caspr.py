@@ -8,19 +8,39 @@ about the body's own x, y and z; attachments are counted from the joint or from 
 from __future__ import annotations
 
 import math
+import warnings
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from designer.documents.xml import Element, read_xml
 from designer.errors import InputError
-from designer.foreign.robot import ORIGIN, ForeignRobot, Point, Remarks, held_at_one_point, moved
+from designer.foreign.robot import (
+    ORIGIN,
+    ForeignRobot,
+    Point,
+    Remarks,
+    held_at_one_point,
+    largest_tension_N,
+    moved,
+)
 
 BODIES, CABLES = "bodies", "cables"
 ROOTS = {"bodies_system": BODIES, "links": BODIES, "cables": CABLES}
 """What a file holds, by its outermost element; older files of bodies have no outer one."""
 
-NO_LIMIT = "inf"
-"""As MATLAB reads it, in any case."""
+_WITH_WINCH = (
+    *("cable_ideal", "cable_linear_spring"),
+    *("cable_vsd_torsion_spring", "cable_vsd_flexure_linear", "cable_vsd_polynomial"),
+)
+_POINT, _PULLEY = "attachment", "base_rotating_pulley"
+_NOT_SUPPORTED = {
+    "cable_passive_linear_spring": "no study has a spring without a winch",
+    "muscle_hill_type": "no study has a muscle",
+    "pneumatic_artificial_muscle": "no study has a muscle",
+    "screw_base_rotating_pulley": "no study has an exit point that a screw moves",
+}
+"""With those above, all kinds of cables and attachments that CASPR knows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,13 +145,13 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
     remarks: Remarks = {}
     limits = _limits(joint_element, joint, base, remarks)
     if not joint.turns:
-        point = held_at_one_point(cable_set, attachments)
-        position = None if position is None else moved(position, point)
-        if limits is not None:
-            limits = tuple(
-                (low + d, high + d) for (low, high), d in zip(limits, point, strict=True)
-            )
+        held_at_one_point(cable_set, attachments)
     least_N, largest_N = _tension_limits(cable_set, remarks)
+    properties = (cable.find("properties") for cable in cable_set.children)
+    names = {child.tag for element in properties if element for child in element.children}
+    if names := names - {"force_min", "force_max"}:
+        listed = ", ".join(sorted(names))
+        remarks["cable"] = (f"Of its cables the file has {listed}; a study has those of its rope.",)
     return ForeignRobot(
         file=bodies.file,
         name=link.attributes.get("name", "").strip()
@@ -139,10 +159,11 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
         source=f"CASPR model: {Path(bodies.file).name} and {Path(cable_set.file).name}, "
         f"cable set '{cable_set.attributes.get('id', '')}'",
         exit_points_m=exit_points,
-        attachments_m=attachments if joint.turns else None,
+        attachments_m=attachments,
         mass_kg=link.need("physical", "mass").numbers(1)[0],
         centre_of_mass_m=centre,
         plane_normal=joint.normal,
+        turns=joint.turns,
         position_m=position,
         euler_xyz_rad=euler,
         limits_m=limits,
@@ -154,10 +175,18 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
 
 
 def _cables(cable_set: Element) -> list[Element]:
-    cables = [cable for cable in cable_set.children if cable.tag.startswith("cable_")]
-    if not cables:
+    if not cable_set.children:
         cable_set.refuse("the cable set has no cables", "<cable_ideal> and the like")
-    return cables
+    for cable in cable_set.children:
+        _require_kind(cable, _WITH_WINCH)
+    return cable_set.children
+
+
+def _require_kind(element: Element, kinds: tuple[str, ...]) -> None:
+    if element.tag not in kinds:
+        why = _NOT_SUPPORTED.get(element.tag, "CASPR has no such kind")
+        expected = f"<{'>, <'.join(kinds)}>"
+        element.refuse(f"<{element.tag}> is not supported: {why}", expected)
 
 
 def _point(element: Element) -> Point:
@@ -171,13 +200,16 @@ def _ends(cable: Element, centre: Point) -> tuple[Point, Point]:
     reference = cable.attributes.get("attachment_reference", "joint")
     exits, attachments = [], []
     for attachment in cable.need("attachments").children:
-        if attachment.tag == "base_rotating_pulley":
+        _require_kind(attachment, (_POINT, _PULLEY))
+        if attachment.tag == _PULLEY:
             exits.append(_point(attachment.need("fixed_location")))
             continue
         link, place = attachment.need("link").numbers(1)[0], _point(attachment.need("location"))
         if link not in (0, 1):
             attachment.refuse(f"{name} is held by link {link:g}", "0, the base, or 1, the platform")
         at = attachment.attributes.get("attachment_reference", reference)
+        if at not in ("joint", "com"):
+            attachment.refuse(f"{name} has attachments counted from '{at}'", "joint or com")
         if link == 0:
             exits.append(place)
         else:
@@ -198,10 +230,24 @@ def _initial(element: Element, joint: _Joint, base: Point) -> tuple[Point | None
     angles = values[len(joint.axes) :] if joint.turns else ()
     if element.attributes["type"] == "SPATIAL_EULER_XYZ" and len(angles) == 3:
         return position, (angles[0], angles[1], angles[2])
+    if element.attributes["type"] == "SPATIAL_QUATERNION" and len(angles) == 4:
+        return position, _euler_xyz_rad(angles)
     if joint.normal is not None and len(angles) == 1:
         x, y, z = (component * angles[0] for component in joint.normal)
         return position, (x, y, z)
     return position, None if any(angles) else ORIGIN
+
+
+def _euler_xyz_rad(quaternion: tuple[float, ...]) -> Point | None:
+    """Return the angles of a quaternion, real part first; None for one of zeros."""
+    from scipy.spatial.transform import Rotation
+
+    if not any(quaternion):
+        return None
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of turns by 90° about y, for which several angles serve
+        x, y, z = Rotation.from_quat(quaternion, scalar_first=True).as_euler("XYZ").tolist()
+    return x, y, z
 
 
 def _along(axes: tuple[int, ...], values: tuple[float, ...]) -> Point:
@@ -258,19 +304,20 @@ def _tension_limits(
     cable_set: Element, remarks: Remarks
 ) -> tuple[float, float | tuple[float | None, ...] | None]:
     """Return the least tension of all cables, and the largest of all or of each."""
-    least, largest = (
-        [_force(cable, name) for cable in _cables(cable_set)] for name in ("force_min", "force_max")
-    )
-    given = {force for force in least if force is not None}
+    cables = _cables(cable_set)
+    given = {force for cable in cables if (force := _force(cable, "force_min")) is not None}
     if len(given) > 1:
         remarks["robot.tension_min"] = ("The file's cables differ; this is the largest.",)
-    each = tuple(None if force is None or force <= 0.0 else force for force in largest)
+    each = tuple(largest_tension_N(_force(cable, "force_max"), remarks) for cable in cables)
     return max((0.0, *given)), each if len(set(each)) > 1 else each[0]
 
 
 def _force(cable: Element, name: str) -> float | None:
     """Return a limit of a cable's tension; None where the file has none."""
     element = cable.find("properties", name)
-    if element is None or element.text.strip().lower() == NO_LIMIT:
+    if element is None:
         return None
+    with suppress(ValueError):
+        if float(element.text) == math.inf:  # in any case, as MATLAB reads it
+            return math.inf
     return element.numbers(1)[0]

@@ -138,6 +138,7 @@ def _robot(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:
 
 def _winches(robot: ForeignRobot, *, has_workspace: bool) -> Iterator[str]:
     """Yield the largest tension, commented out where the study has no poses to hold it in."""
+    yield from _remarks(robot, "robot.winches", "  ")
     largest = robot.tension_max_N
     if largest is None:
         return
@@ -290,8 +291,8 @@ def read_foreign(
     """
     root = read_xml(path)
     if root.tag in caspr.ROOTS:
-        return caspr.read_caspr(path, root, other, cable_set)
+        return caspr.read_caspr(path, root, other, cable_set).as_point_mass()
     if root.tag != wirex.ROOT:
         roots = f"<{'>, <'.join(caspr.ROOTS)}> of CASPR or <{wirex.ROOT}> of WireX"
         root.refuse(f"the file holds <{root.tag}>", roots)
-    return wirex.read_wirex(path, root)
+    return wirex.read_wirex(path, root).as_point_mass()

@@ -8,11 +8,21 @@ these, it is taken to say nothing, and the user is asked.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 
 from designer.documents.bounds import BOUNDS
 from designer.documents.xml import Element
-from designer.foreign.robot import ForeignRobot, ForeignRope, Point, Remarks, held_at_one_point
+from designer.foreign.robot import (
+    ForeignRobot,
+    ForeignRope,
+    Point,
+    Remarks,
+    held_at_one_point,
+    largest_tension_N,
+)
+from designer.grades.proportions import LARGEST_FACTOR_OF_DOUBT
 
 ROOT = "models"
 _MASS = 25.0
@@ -60,11 +70,12 @@ def read_wirex(path: Path, root: Element) -> ForeignRobot:
         name=robot.attributes.get("name", "").strip() or path.stem,
         source=f"WireX robot file: {path.name}",
         exit_points_m=tuple(map(_position, bases)),
-        attachments_m=None if pattern in (_POINT, _PLANAR_POINT) else attachments,
+        attachments_m=attachments,
         mass_kg=_mass(platform, remarks),
         centre_of_mass_m=_centre(platform, remarks),
         plane_normal=(0.0, 0.0, 1.0) if pattern in (_PLANAR, _PLANAR_POINT) else None,
-        tension_max_N=_of_winch(winch, "cable", "f_max"),
+        turns=pattern in (_FREE, _PLANAR),
+        tension_max_N=largest_tension_N(_of_winch(winch, "cable", "f_max"), remarks),
         pulley_radius_m=_pulley_radius(bases, remarks),
         rope=_rope(root.find("cable"), remarks),
         remarks=remarks,
@@ -120,15 +131,35 @@ def _rope(cable: Element | None, remarks: Remarks) -> ForeignRope | None:
         expected = f"{0.5 * bound.least:g} m to {0.5 * bound.most:g} m: {bound.reason}"
         cable.refuse(radius_words, expected)
     area = math.pi * figures["radius"] ** 2
-    remarks["cable"] = (
-        f"A rope of {2e3 * figures['radius']:g} mm, {figures['weight']:g} kg/m, breaking at "
-        f"{figures['breaking_load']:g} N; all over the full circle of its diameter.",
-    )
-    return ForeignRope(
+    rope = ForeignRope(
         density_kg_per_m3=figures["weight"] / area,
         breaking_stress_Pa=figures["breaking_load"] / area,
         youngs_modulus_Pa=figures.get("elasticity"),
     )
+    remarks["cable"] = (
+        f"A rope of {2e3 * figures['radius']:g} mm, {figures['weight']:g} kg/m, breaking at "
+        f"{figures['breaking_load']:g} N; all over the full circle of its diameter.",
+        *_unlike_all_known(rope),
+    )
+    return rope
+
+
+def _unlike_all_known(rope: ForeignRope) -> Iterator[str]:
+    """Yield a remark where each rope of the catalogue is far off in some figure."""
+    from designer.grades.registry import load_catalogue
+
+    figures = {name: value for name, value in asdict(rope).items() if value is not None}
+    off = min(
+        max(abs(math.log(value) - math.log(getattr(fit, name))) for name, value in figures.items())
+        for fit in (grade.fit() for grade in load_catalogue(with_plugins=False).grades)
+    )
+    if off > math.log(LARGEST_FACTOR_OF_DOUBT):
+        modulus = f", E {rope.youngs_modulus_Pa / 1e9:.3g} GPa" if rope.youngs_modulus_Pa else ""
+        yield (
+            f"No rope of the catalogue is near its {rope.density_kg_per_m3:.0f} kg/m³, breaking at "
+            f"{rope.breaking_stress_Pa / 1e6:.0f} MPa{modulus}: check radius, weight, elasticity "
+            "and breaking load."
+        )
 
 
 def _of_winch(winch: Element | None, tag: str, name: str) -> float | None:

@@ -98,7 +98,8 @@ def test_random_robots_are_read_back(tmp_path, kind: str, seed: int) -> None:
     if not robot.is_planar:
         assert np.allclose(np.transpose(same.limits_m), [low, high], rtol=1e-15)
         assert not any("shape" in line for line in lost)
-    assert not same.remarks
+    is_unlimited = None in (limits_N if isinstance(limits_N, tuple) else (limits_N,))
+    assert list(same.remarks) == ["robot.winches"] * is_unlimited
 
 
 def test_a_lying_frame_is_turned_upright_and_keeps_its_shape(tmp_path) -> None:

@@ -17,6 +17,7 @@ from models import (
     link,
     write_caspr,
 )
+from scipy.spatial.transform import Rotation
 
 from designer.errors import InputError
 from designer.foreign.study import read_foreign
@@ -90,9 +91,78 @@ def test_angles_are_taken_where_they_are_understood(tmp_path) -> None:
     turned = 'type="SPATIAL_EULER_XYZ" q_initial="0 0 2 0.1 0.2 0.3"'
     robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=turned)), cables()))
     assert robot.euler_xyz_rad == (0.1, 0.2, 0.3)
-    quaternion = 'type="SPATIAL_QUATERNION" q_initial="0 0 2 1 0 0 0"'
-    robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=quaternion)), cables()))
+    unknown = 'type="SPATIAL" q_initial="0 0 2 0.1 0.2 0.3"'
+    robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=unknown)), cables()))
     assert robot.euler_xyz_rad is None
+
+
+@pytest.mark.parametrize("quaternion", ["1 0 0 0", "0.8 0 0.6 0", "2 1 0 -1", "0.5 0.5 0.5 -0.5"])
+def test_quaternion_is_a_pose(tmp_path, quaternion: str) -> None:
+    joint = f'type="SPATIAL_QUATERNION" q_initial="0.5 0 2 {quaternion}"'
+    robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=joint)), cables()))
+    assert robot.position_m == (0.5, 0.0, 2.0)
+    turn = Rotation.from_euler("XYZ", robot.euler_xyz_rad)
+    w, x, y, z = map(float, quaternion.split())
+    norm = w * w + x * x + y * y + z * z
+    column = [w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y)]
+    assert np.allclose(turn.apply([1.0, 0.0, 0.0]), np.divide(column, norm))
+    assert any(robot.euler_xyz_rad) == (quaternion != "1 0 0 0")
+
+
+def test_quaternion_of_zeros_is_no_pose(tmp_path) -> None:
+    joint = 'type="SPATIAL_QUATERNION" q_initial="0 0 2 0 0 0 0"'
+    robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=joint)), cables()))
+    assert robot.euler_xyz_rad is None
+
+
+def test_cables_that_meet_make_a_point_mass(tmp_path) -> None:
+    joint = 'type="SPATIAL_EULER_XYZ" q_initial="1 0 2 0 0 1.5707963267948966" '
+    at_one = cables(EXITS, [(0.1, 0, 0.5)] * 8)
+    rows = bodies(link(joint=joint + LIMITS))
+    robot = read_foreign(write_caspr(tmp_path, rows, at_one))
+    assert robot.attachments_m is None
+    assert robot.position_m == pytest.approx((1.0, 0.1, 2.5))  # the point turns with the platform
+    assert robot.euler_xyz_rad == (0.0, 0.0, 0.0)
+    assert np.allclose(robot.limits_m, [(-0.9, 1.1), (-1.0, 1.0), (1.5, 3.5)])
+    assert "point mass" in robot.remarks["robot"][0]
+
+
+def with_largest(*texts: str) -> str:
+    whole = cables()
+    for text in texts:
+        whole = whole.replace("<force_max>900<", f"<force_max>{text}<", 1)
+    return whole
+
+
+@pytest.mark.parametrize(
+    "text", ["9999999999", "1e10", "inf", "Inf", " +INF ", "1e400", "-1", "0", "0.1"]
+)
+def test_a_number_that_is_no_winchs_is_no_limit(tmp_path, text: str) -> None:
+    robot = read_foreign(write_caspr(tmp_path, bodies(), with_largest(*[text] * 8)))
+    assert robot.tension_max_N is None
+    assert "no winch's: taken as no limit" in robot.remarks["robot.winches"][0]
+    robot = read_foreign(write_caspr(tmp_path, bodies(), with_largest(text)))
+    assert robot.tension_max_N == (None, *[900.0] * 7)
+
+
+def test_a_limit_of_a_winch_has_no_remark(tmp_path) -> None:
+    robot = read_foreign(write_caspr(tmp_path, bodies(), with_largest("2e6")))
+    assert robot.tension_max_N == (2e6, *[900.0] * 7)
+    assert not robot.remarks
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        *("cable_ideal", "cable_linear_spring", "cable_vsd_torsion_spring"),
+        *("cable_vsd_flexure_linear", "cable_vsd_polynomial"),
+    ],
+)
+def test_cables_with_winches_are_ropes(tmp_path, kind: str) -> None:
+    text = cables().replace("cable_ideal", kind).replace("<properties>", "<properties><K>100</K>")
+    robot = read_foreign(write_caspr(tmp_path, bodies(), text))
+    assert len(robot.exit_points_m) == 8
+    assert robot.remarks["cable"][0].startswith("Of its cables the file has K;")
 
 
 def test_pulleys_that_a_study_can_have(tmp_path) -> None:
@@ -120,8 +190,16 @@ def test_pulleys_that_a_study_can_have(tmp_path) -> None:
 
 TWO_LINKS = bodies(link() + link(2))
 ON_LINK_2 = cable(attachment(0, EXITS[0]) + attachment(2, HELD[0]))
+SPRING = "cable_passive_linear_spring"
+SCREW = "screw_base_rotating_pulley"
 BETWEEN = cable(attachment(1, HELD[0]) + attachment(1, HELD[1]))
 LONG = cable(attachment(0, EXITS[0]) + attachment(1, HELD[0]) + attachment(1, HELD[1]))
+
+
+def one_other(tag: str, instead_of: str = "cable_ideal") -> str:
+    """Return cables the last of which, or whose last attachment, is of another kind."""
+    before, _, after = cables().rpartition(f"<{instead_of}")
+    return f"{before}<{tag}{after.replace(f'</{instead_of}>', f'</{tag}>', 1)}"
 
 
 def in_a_set(inner: str) -> str:
@@ -135,6 +213,14 @@ def in_a_set(inner: str) -> str:
         (bodies(), in_a_set(ON_LINK_2), "held by link 2"),
         (bodies(), in_a_set(BETWEEN), "0 points of the base and 2 of the platform"),
         (bodies(), in_a_set(LONG), "1 points of the base and 2 of the platform"),
+        (bodies(), one_other(SPRING), f"<{SPRING}> is not supported: no study has a spring"),
+        (bodies(), one_other("muscle_hill_type"), "<muscle_hill_type> is not supported"),
+        (bodies(), one_other("pneumatic_artificial_muscle"), "no study has a muscle (expected"),
+        (bodies(), one_other("cable_new"), "<cable_new> is not supported: CASPR has no such kind"),
+        (bodies(), one_other(SCREW, "attachment"), "no study has an exit point that a screw moves"),
+        (bodies(), one_other("hook", "attachment"), "<hook> is not supported: CASPR has no such"),
+        (bodies(), cables(reference="base"), "attachments counted from 'base' (expected joint or"),
+        (bodies(), with_largest("nan"), "<force_max> has 'nan' (expected a finite number)"),
         (bodies(), cables(default="second"), "no cable set 'second' (expected one of: first)"),
         (bodies(), in_a_set(""), "the cable set has no cables"),
         (bodies(), "<cables/>", "the file has no cable set (expected <cable_set>"),

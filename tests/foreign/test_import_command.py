@@ -128,6 +128,24 @@ def test_largest_tension_waits_for_a_workspace(run, tmp_path) -> None:
     assert read_study(tmp_path / "rig.yaml").robot.winches.tension_max_N is None
 
 
+def test_remarks_are_printed_and_stand_in_the_study(run, tmp_path) -> None:
+    at_one = cables(EXITS, [(0, 0, 0)] * 8).replace("<force_max>900<", "<force_max>1e10<")
+    path = write_caspr(tmp_path, bodies(link(joint=f"{FREE} {LIMITS}", centre="0 0 0")), at_one)
+    status, out, _ = run("import", str(path), *GRADE)
+    assert status == 0
+    text = (tmp_path / "rig.yaml").read_text()
+    for remark in (
+        "All cables hold the platform at one point",
+        "The file has a largest tension of",
+    ):
+        assert f"\n  {remark}" in out
+        assert f"\n  # {remark}" in text
+    assert "8 cables on a point mass" in out
+    study = read_study(tmp_path / "rig.yaml")
+    assert study.robot.degrees_of_freedom == 3
+    assert study.robot.winches.tension_max_N is None
+
+
 def test_a_name_that_yaml_takes_for_something_else(run, tmp_path) -> None:
     odd = bodies(link().replace("Test rig", "yes: #1 &quot;fill in&quot;&#10;robot: fill in"))
     path = write_caspr(tmp_path, odd, cables())

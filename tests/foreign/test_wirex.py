@@ -64,8 +64,45 @@ def test_winch_data_are_told(tmp_path) -> None:
     assert "drum radius 0.25 m" in robot.remarks["robot"][0]
 
 
-def test_a_point_mass(tmp_path) -> None:
-    assert read(tmp_path, wirex(pattern="3T", held=[(0, 0, 0)] * 8)).attachments_m is None
+@pytest.mark.parametrize("pattern", ["3T", "3R3T"])
+def test_a_point_mass(tmp_path, pattern: str) -> None:
+    assert read(tmp_path, wirex(pattern=pattern, held=[(0, 0, 0)] * 8)).attachments_m is None
+
+
+def test_a_number_that_is_no_winchs_is_no_limit(tmp_path) -> None:
+    winch = '<winch><cable f_max="1e10"/></winch></models>'
+    robot = read(tmp_path, wirex().replace("</models>", winch))
+    assert robot.tension_max_N is None
+    assert "1e+10 N, which is no winch's" in robot.remarks["robot.winches"][0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "figure"),
+    [
+        ("6e10", "1.77e9", "E 1.77 GPa"),  # a grade of wire, typed as a modulus
+        ("0.002", "0.004", "1194 kg/m³"),  # the diameter, typed as a radius
+        ('elasticity="6e10" radius="0.002"', 'radius="0.003"', "318 MPa: check"),
+        ("9000", "900", "72 MPa"),
+    ],
+)
+def test_a_rope_unlike_all_known(tmp_path, old: str, new: str, figure: str) -> None:
+    robot = read(tmp_path, wirex(rope=ROPE.replace(old, new)))
+    _, remark = robot.remarks["cable"]
+    assert remark.startswith("No rope of the catalogue is near")
+    assert figure in remark
+
+
+def test_a_thick_rope_with_a_wire_grade_as_modulus(tmp_path) -> None:
+    """Each figure alone is some rope's: no polyester is so dense, no steel so soft."""
+    rope = '<cable elasticity="1.77e9" radius="0.007" breaking_load="21900" weight="0.198"/>'
+    _, remark = read(tmp_path, wirex(rope=rope)).remarks["cable"]
+    assert "its 1286 kg/m³, breaking at 142 MPa, E 1.77 GPa: check" in remark
+
+
+@pytest.mark.parametrize("elasticity", ["6e10", "8e10"])
+def test_a_rope_like_known_ones_has_no_such_remark(tmp_path, elasticity: str) -> None:
+    robot = read(tmp_path, wirex(rope=ROPE.replace("6e10", elasticity)))
+    assert len(robot.remarks["cable"]) == 1
 
 
 @pytest.mark.parametrize(
