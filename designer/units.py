@@ -32,6 +32,14 @@ _COMMON_UNITS = (
     *("Pa", "kPa", "MPa", "GPa", "bar", "psi", "ksi", "pascal", "megapascal", "gigapascal"),
     *("rad", "deg", "radian", "degree", "K", "degC", "kelvin", "s", "min", "h", "second", "Hz"),
 )
+TONS = ("short_ton_force", "tonf", "long_ton_force")
+_FORCES_OF_TONS = "short_ton_force (2000 lb), tonf (1000 kg), long_ton_force (2240 lb)"
+_TABLE_UNITS = {
+    "m": "mm, cm, m, in",
+    "N": f"N, daN, kN, MN, kgf, lbf, kip, {_FORCES_OF_TONS}",
+    "kg/m": "kg/m, g/m, kg/100m, kg/km, lb/ft, lb/100ft",
+    "m^2": "mm^2, cm^2, in^2",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +58,11 @@ class Dimension:
     def expected(self) -> str:
         """What to write, for an error message."""
         return f"{self.noun} such as " + (f"'{self.example}'" if self.unit else self.example)
+
+    @property
+    def expected_unit(self) -> str:
+        """What unit to write in a table, for an error message."""
+        return f"a unit of {self.noun}: {_TABLE_UNITS.get(self.unit, self.unit)}"
 
 
 NUMBER = Dimension("a plain number", "", "5")
@@ -271,6 +284,10 @@ def _check_unit(name: str) -> None:
 
     from designer.spelling import nearest_name
 
+    if re.fullmatch(r"tons?(_force)?|force_tons?", name):
+        masses = "short_ton (2000 lb), t (1000 kg), long_ton (2240 lb)"
+        instead = f"of a mass {masses}; of a force {_FORCES_OF_TONS}"
+        raise _MisreadError(f"has the unit '{name}', of which there are three", instead=instead)
     try:
         _registry().parse_units(name)
     except PintError:

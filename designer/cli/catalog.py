@@ -143,12 +143,16 @@ def catalog_check(
 
     Example:  designer catalog check my-ropes/
     """
-    from designer.grades.listing import check_path, summary
+    from designer.grades.files import read_grades
+    from designer.grades.listing import summary, ton_remarks
 
     if path is not None:
-        faults = check_path(path)
+        files, faults = read_grades(path, needs_any=True)
         if faults:
             raise InputError(faults)
+        for file in files:
+            for remark in ton_remarks(file.grade):
+                typer.echo(f"{file.path}: {remark}")
         typer.echo(f"{path}: no fault found")
         return
     catalogue = _loaded(no_plugins)

@@ -76,23 +76,7 @@ TRUST_MEANING = {
 
 @dataclass(frozen=True, slots=True)
 class Size(FileValue):
-    """One size of a grade.
-
-    Parameters
-    ----------
-    id : str
-        The size as its source names it, such as ``6 mm`` or ``1/4 in``.
-    diameter_m : float
-        Nominal diameter.
-    minimum_breaking_load_N, linear_density_kg_per_m : float
-    metallic_area_m2 : float or None
-        Sum of the wires' sections; None where the source gives none.
-    price_per_m : float or None
-        Price of one metre in the grade's currency; None where it is not known.
-    doubt : str or None
-        Why the figures of this size may be wrong. A doubtful size may still be chosen, and
-        whoever shows it shows the doubt with it.
-    """
+    """One size of a grade, by its nominal diameter; None where its source gives no figure."""
 
     id: Annotated[Line, Field(description="the size as its source names it, such as '6 mm'")]
     diameter_m: Annotated[
@@ -108,10 +92,12 @@ class Size(FileValue):
         figure("linear_mass"),
         Field(alias="linear_mass", description="a mass per length such as '0.137 kg/m'"),
     ]
+    #: Sum of the wires' sections.
     metallic_area_m2: Annotated[
         Annotated[float, figure("metallic_area")] | None, Field(alias="metallic_area")
     ] = None
-    price_per_m: Annotated[float, bounded("price")] | None = None
+    price_per_m: Annotated[float, bounded("price")] | None = None  #: in the grade's currency
+    #: Why its figures may be wrong: such a size may be chosen, and its doubt is shown with it.
     doubt: Line | None = None
 
     @property

@@ -2,41 +2,32 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from pathlib import Path
+from statistics import median
 from typing import Any
 
-from designer.errors import Fault
-from designer.grades.files import read_grades
 from designer.grades.grade import TRUST_MEANING, Grade, Size
-from designer.grades.registry import Catalogue
+from designer.grades.parts import Units
+from designer.grades.registry import Catalogue, load_catalogue
+from designer.units import FORCE, TONS, read_quantity
 
 SAME_DIAMETER = 0.02
 """Two nominal diameters within this part of each other count as one, such as 12.7 and 12.5 mm."""
+_BETWEEN = 0.03
+"""So far off both, a breaking load lies between those of two wire grades, 10 to 13 % apart."""
 
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What grades to list; each None wants all.
+    """What grades to list; each None wants all. Capitals do not matter."""
 
-    Parameters
-    ----------
-    construction : str or None
-        Such as ``7x19`` or ``braid``; capitals and blanks do not matter.
-    material : str or None
-        The whole name of a material; capitals do not matter.
-    maker : str or None
-        Part of the manufacturer's or the publisher's name.
-    diameter_m : float or None
-        Nominal diameter; keeps the sizes that are within `SAME_DIAMETER` of it [m].
-    """
-
-    construction: str | None = None
-    material: str | None = None
-    maker: str | None = None
-    diameter_m: float | None = None
+    construction: str | None = None  #: such as ``7x19`` or ``braid``; blanks do not matter
+    material: str | None = None  #: its whole name
+    maker: str | None = None  #: part of the manufacturer's or the publisher's name
+    diameter_m: float | None = None  #: keeps the sizes within `SAME_DIAMETER` of it [m]
 
     def among(self, grades: Iterable[Grade]) -> list[Grade]:
         """Return the grades that match, with the sizes that do."""
@@ -115,12 +106,37 @@ def listed(grade: Grade) -> dict[str, Any]:
     }
 
 
-def check_path(path: Path) -> list[Fault]:
-    """Return every fault of a grade file, or of all the grade files in a folder.
+def ton_remarks(grade: Grade) -> list[str]:
+    """Return why the tons of a grade's table may be others, of 2000 lb, 1000 kg or 2240 lb.
 
-    A folder without a grade file is a fault as well: nothing has been checked.
+    Breaking load over d² changes by 10 or 12 % with the ton, about as much as from a wire grade to
+    the next: with the wrong one it lies between two of them.
     """
-    return read_grades(path, needs_any=True)[1]
+    units = grade.units or Units()
+    unit_N = read_quantity(f"1 {units.minimum_breaking_load or 'N'}", FORCE)
+    stated = next((t for t in TONS if math.isclose(read_quantity(f"1 {t}", FORCE), unit_N)), None)
+    if stated is None:
+        return []
+    remarks, beside = [], f"{units.diameter} and {units.linear_mass}"
+    if stated == "tonf" and re.search(r"\bin|lb|pound|ft|foot", beside):
+        remarks.append(
+            f"tonf is 1000 kgf; beside {beside} most tons are of 2000 lb, short_ton_force, 9 % less"
+        )
+    kind = (grade.construction.partition(" ")[0], grade.core)
+    ratios = [
+        _strength_Pa(grade) / _strength_Pa(other)
+        for other in load_catalogue(with_plugins=False).grades
+        if (other.construction.partition(" ")[0], other.core) == kind
+    ]
+    off = min((abs(ratio - 1.0) for ratio in ratios), default=0.0)
+    if off > _BETWEEN and min(ratios) < 1.0 < max(ratios):
+        between = f"over d² the breaking load lies between those of known {' '.join(kind)} ropes"
+        remarks.append(f"{between}, {off:.0%} from the nearest: check whether its ton is {stated}")
+    return remarks
+
+
+def _strength_Pa(grade: Grade) -> float:
+    return median(size.breaking_stress_Pa for size in grade.sizes)
 
 
 def _identity(grade: Grade) -> Iterator[tuple[str, str]]:

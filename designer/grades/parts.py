@@ -31,7 +31,7 @@ def unit_of(figure: str) -> BeforeValidator:
         try:
             units.read_quantity(f"1 {unit}", dimension)
         except units.QuantityError:
-            expected = f"a unit of {dimension.noun} such as '{dimension.unit}'"
+            expected = dimension.expected_unit
             raise refusal(f"{units.describe(unit)} does not fit", expected) from None
         return unit
 
@@ -60,34 +60,20 @@ ComputedColumn = Literal["minimum_breaking_load", "linear_mass", "metallic_area"
 
 @dataclass(frozen=True, slots=True)
 class Modulus(FileValue):
-    """Effective modulus of elasticity of a rope.
-
-    Parameters
-    ----------
-    value_Pa : float
-        Axial stiffness EA over the reference area.
-    reference_area : str
-        ``nominal`` (the circle of the nominal diameter) or ``metallic``.
-    basis : str
-        ``printed`` for this grade, ``computed`` from other figures of this grade, or
-        ``borrowed`` from a rope of the same construction.
-    source : str
-        Where the figure comes from; for a borrowed one, the lender.
-    uncertainty : float
-        Relative half-width of the range the true value may lie in.
-    new_Pa : float or None
-        The same before the rope has bedded in; None where it is not known. No effect on results.
-    """
+    """Effective modulus of elasticity of a rope: axial stiffness EA over the reference area."""
 
     value_Pa: Annotated[
         float, bounded("modulus"), Field(alias="value", description="a modulus such as '62.7 GPa'")
     ]
+    #: The same before the rope has bedded in, where it is known. No effect on results.
     new_Pa: Annotated[Annotated[float, bounded("modulus")] | None, Field(alias="new")] = field(
         default=None, kw_only=True
     )
+    #: ``nominal``, the circle of the nominal diameter, or ``metallic``
     reference_area: Annotated[ReferenceArea, Field(description="'nominal' or 'metallic'")]
     basis: StatedBasis
-    source: Origin
+    source: Origin  #: of a borrowed one, the lender
+    #: relative half-width of the range that the true value may lie in
     uncertainty: Annotated[Uncertainty, Field(description="a fraction such as 0.15")]
 
     @property
@@ -202,19 +188,11 @@ class RelativeStiffness:
     meets in a load case, see `designer.selection.stiffening`; of a continuous family the one at
     its allowable tension, which its thinnest member meets. Strain at low load, and stretch that
     does not come back, are not in it.
-
-    Parameters
-    ----------
-    ea_over_breaking_load : tuple of float
-        EA / MBL, slope of load fraction over strain; one figure, or one for each load.
-    load_fraction : tuple of float
-        Loads over MBL at which they hold, ascending; empty where one figure is for all loads.
-    basis, source, uncertainty
-        As for a `designer.grades.parts.Modulus`.
     """
 
+    #: EA / MBL, slope of load fraction over strain; one figure, or one for each load.
     ea_over_breaking_load: tuple[float, ...]
-    load_fraction: tuple[float, ...]
+    load_fraction: tuple[float, ...]  #: loads over MBL, ascending; empty for one figure for all
     basis: Basis
     source: str
     uncertainty: float

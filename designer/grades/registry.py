@@ -44,24 +44,12 @@ class CatalogueSource:
 
 @dataclass(frozen=True, slots=True)
 class Catalogue:
-    """All grades that are known.
+    """All grades that are known."""
 
-    Parameters
-    ----------
-    grades : tuple of Grade
-        Ids are unique; each grade's ``origin`` is the name of its source.
-    sources : tuple of CatalogueSource
-        What was loaded.
-    problems : tuple of str
-        What was left out and why, one line each.
-    with_plugins : bool
-        Whether plugins of others were looked for.
-    """
-
-    grades: tuple[Grade, ...]
+    grades: tuple[Grade, ...]  #: ids are unique; ``origin`` is the name of a grade's source
     sources: tuple[CatalogueSource, ...]
-    problems: tuple[str, ...]
-    with_plugins: bool = True
+    problems: tuple[str, ...]  #: what was left out and why, one line each
+    with_plugins: bool = True  #: whether plugins of others were looked for
 
     def grade(self, grade_id: str) -> Grade:
         """Return the grade with this id.

@@ -44,6 +44,9 @@ FACTORS = [
     (MASS, "lb", 0.45359237),
     (FORCE, "kN", 1e3),
     (FORCE, "tonf", 9806.65),
+    (FORCE, "short_ton_force", 2000 * 4.4482216152605),
+    (FORCE, "long_ton_force", 2240 * 4.4482216152605),
+    (MASS, "short_ton", 2000 * 0.45359237),
     (FORCE, "kip", 4448.2216152605),
     (LINEAR_DENSITY, "lb/100ft", 0.45359237 / 30.48),
     (LINEAR_DENSITY, "lb / 100 ft", 0.45359237 / 30.48),
@@ -75,6 +78,23 @@ def test_a_value_written_in_another_unit_is_the_same_in_SI(
 ) -> None:
     dimension, unit, factor = how
     assert read_quantity(f"{value / factor!r} {unit}", dimension) == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("dimension", "unit"),
+    [
+        (MASS, "ton"),
+        (MASS, "tons"),
+        (FORCE, "ton"),
+        (FORCE, "ton_force"),
+        (LINEAR_DENSITY, "ton/m"),
+    ],
+)
+def test_a_ton_of_whatever_kind_is_asked_for(dimension: Dimension, unit: str) -> None:
+    with pytest.raises(QuantityError, match="of which there are three") as refused:
+        read_quantity(f"4 {unit}", dimension)
+    for name in ("short_ton (2000 lb)", "t (1000 kg)", "long_ton_force (2240 lb)"):
+        assert name in refused.value.expected
 
 
 @given(value=st.floats(-1e15, 1e15))

@@ -5,9 +5,9 @@ import json
 import pytest
 from grade_samples import GRADE_TEXT, write_grade
 
+from designer.grades.files import read_grades
 from designer.grades.listing import (
     Wanted,
-    check_path,
     facts,
     split_nominal,
     summary,
@@ -28,20 +28,20 @@ def test_facts_name_the_lender_of_a_borrowed_figure_and_the_gaps():
 
 
 def test_checking_a_sound_file_finds_nothing(tmp_path):
-    assert check_path(write_grade(tmp_path / "acme.yaml")) == []
+    assert read_grades(write_grade(tmp_path / "acme.yaml"), needs_any=True)[1] == []
 
 
 def test_checking_a_folder_finds_the_faults_of_every_file(tmp_path):
     write_grade(tmp_path / "a.yaml", GRADE_TEXT.replace("60 GPa", "60 mm"))
     write_grade(tmp_path / "b.yaml", GRADE_TEXT.replace("0.244", "0.164"))
 
-    faults = check_path(tmp_path)
+    faults = read_grades(tmp_path, needs_any=True)[1]
 
     assert [fault.field for fault in faults] == ["modulus.value", "sizes[2].linear_mass"]
 
 
 def test_checking_a_folder_without_grades_does_not_pass(tmp_path):
-    (fault,) = check_path(tmp_path)
+    (fault,) = read_grades(tmp_path, needs_any=True)[1]
 
     assert "no grade file" in fault.problem
 
