@@ -60,8 +60,9 @@ def catalog_new(
 
     Columns are guessed from their heads, units from heads or a row of units below; on a terminal
     you are asked for what is not known. FIGURE is id, diameter, minimum_breaking_load, linear_mass
-    or metallic_area; UNIT such as mm, in, kN, kgf, tonf, lbf, kg/m, kg/100m, lb/ft. FIELD is as in
-    the file: manufacturer, product, construction, core, finish, material, wire_grade, trust,
+    or metallic_area; UNIT such as mm, in, kN, kgf, lbf, kip, kg/m, kg/100m, lb/ft; of tons
+    short_ton_force (2000 lb), tonf (1000 kg), long_ton_force (2240 lb). FIELD is as in the file:
+    manufacturer, product, construction, core, finish, material, wire_grade, trust,
     source.publisher, source.document, modulus.value and others.
 
     Breaking load and mass follow MBL = c d² and m = k d² within a grade: a row that does not is
@@ -82,13 +83,13 @@ def catalog_new(
     from designer.io.output import write_new_file
 
     columns, units = _pairs("--column", column, FIGURES), _pairs("--unit", unit, FIGURES[1:])
-    texts = _pairs("--set", field, TEXTS)
+    given = _pairs("--set", field, TEXTS)
     lender = None if like is None else _grade(like, no_plugins)
     maker_table = read_maker_table(table, columns, _choose if _asks() else lambda *_: None, page)
     units = _units(maker_table, units)
     rows = maker_table.rows(units)
     _print_table(maker_table, units, len(rows))
-    texts = _usual(table, lender) | texts
+    texts = _usual(table, lender) | given
     draft = GradeDraft(maker_table, rows, units, texts, lender, doubt)
     if _asks():
         draft = _asked(draft, no_plugins)
@@ -97,7 +98,7 @@ def catalog_new(
         draft.grade()
     path = output or table.with_suffix(".yaml").name
     write_new_file(Path(path), draft.text())
-    _print_end(Path(path), draft)
+    _print_end(Path(path), draft, "trust" in given or _asks())
     return not draft.missing
 
 
@@ -131,11 +132,12 @@ def _grade(grade_id: str, no_plugins: bool) -> Grade:
 
 def _usual(table: Path, lender: Grade | None) -> dict[str, str]:
     """Return what is usual where nobody says otherwise."""
+    from designer.io.grade_draft import COPIED
+
     grade_id = re.sub(r"[^a-z0-9]+", "-", table.stem.casefold()).strip("-")
-    usual = {"id": grade_id, "trust": "A", "source.document": table.name}
+    usual = {"id": grade_id, "trust": "C", "source.document": table.name}
     if lender is not None:
-        names = ("construction", "core", "finish", "material")
-        usual |= {name: value for name in names if (value := getattr(lender, name))}
+        usual |= {name: value for name in COPIED if (value := getattr(lender, name))}
     return usual
 
 
@@ -161,17 +163,17 @@ def _units(table: MakerTable, named: Mapping[str, str]) -> dict[str, str]:
         if figure == SIZE:
             continue
         text = named.get(figure) or column.unit
-        if text is None and _asks():
-            example = DIMENSIONS[figure].example.partition(" ")[2]
-            text = typer.prompt(f"Unit of '{column.head}' ({figure}), such as {example}")
+        while _asks() and (text is None or known_unit(figure, text) is None):
+            text = typer.prompt(f"Unit of '{column.head}' ({DIMENSIONS[figure].expected_unit})")
         unit = None if text is None else known_unit(figure, text)
         if unit is not None:
             units[figure] = unit
         elif text is None:
-            problem, expected = "the unit is not known", f"--unit {figure}=UNIT"
+            problem = "the unit is not known"
+            expected = f"--unit {figure}=UNIT, {DIMENSIONS[figure].expected_unit}"
             faults.append(table.fault(table.head_line, column.head, problem, expected))
         else:
-            expected = f"a unit of {DIMENSIONS[figure].noun} such as '{DIMENSIONS[figure].unit}'"
+            expected = DIMENSIONS[figure].expected_unit
             faults.append(Fault("--unit", None, figure, f"{text!r} does not fit", expected))
     faults += [
         Fault("--unit", None, figure, "no column is known to be it", f"--column {figure}=HEAD")
@@ -188,7 +190,8 @@ def _print_table(table: MakerTable, units: Mapping[str, str], n_rows: int) -> No
     typer.echo(f"{table.name}: {n_rows} sizes")
     for figure, column in table.columns.items():
         unit = f", in {units[figure]}" if figure in units else ""
-        typer.echo(f"  {figure}: column '{column.head}'{unit}")
+        without = ", without the figures in brackets" if column.has_brackets else ""
+        typer.echo(f"  {figure}: column '{column.head}'{unit}{without}")
     if table.left_out:
         typer.echo(f"  left out: {', '.join(table.left_out)}")
 
@@ -254,16 +257,20 @@ def _print_off(draft: GradeDraft, off: Sequence[OffTheLaw]) -> None:
     show(table)
 
 
-def _print_end(path: Path, draft: GradeDraft) -> None:
+def _print_end(path: Path, draft: GradeDraft, trust_is_given: bool) -> None:
+    from designer.io.grade_draft import TEXTS
+
     typer.echo(f"{path} written: {draft.texts.get('id', '')}, {len(draft.rows)} sizes.")
     if draft.like is not None:
-        typer.echo(
-            f"  borrowed from {draft.like.id}: stiffness and what else is not printed; see the file"
-        )
+        typer.echo(f"  copied from {draft.like.id}: {'; '.join(draft.copied)}")
+    if not trust_is_given:
+        typer.echo("  trust: C, third hand; --set trust=A if it is the maker's own table")
+    for remark in draft.remarks():
+        typer.echo(f"  remark: {remark}")
     if draft.missing:
         typer.echo("Fill in what is missing, in the file or by --set, then check it:")
         for name in draft.missing:
-            typer.echo(f"  {name}")
+            typer.echo(f"  {name}: {TEXTS[name]}")
     else:
         typer.echo("It is checked. To use it: catalogues: in a study, or the user folder.")
     typer.echo(f"Next:  designer catalog check {shlex.quote(str(path))}")

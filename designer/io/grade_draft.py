@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from statistics import median
 from typing import Any
 
@@ -13,7 +14,8 @@ from designer.documents.edits import scalar
 from designer.errors import Fault, InputError
 from designer.grades.files import grade_of
 from designer.grades.grade import Grade, Reference, Size
-from designer.grades.parts import DIMENSIONS, Modulus, RelativeStiffness
+from designer.grades.listing import ton_remarks
+from designer.grades.parts import DIMENSIONS, Modulus, RelativeStiffness, Units
 from designer.grades.proportions import flaws_over_diameter
 from designer.io.maker_table import MakerRow, MakerTable
 from designer.units import read_quantity
@@ -33,12 +35,14 @@ TEXTS = {
     "source.document": "name of the sheet, page or catalogue",
     "source.url": "its address, if it has one",
     "source.date": "its date or edition",
-    "modulus.value": "on the circle of the nominal diameter, such as 62.7 GPa",
+    "modulus.value": "on the circle of the nominal diameter, such as 62.7 GPa; or --like GRADE",
     "modulus.source": "where the modulus comes from",
     "modulus.uncertainty": "as a fraction, such as 0.1",
 }
 """What may be said of a grade beside its table, by the fields of its file."""
 OPTIONAL = ("material", "standard", "wire_grade", "source.url", "source.date")
+COPIED = ("construction", "core", "finish", "material")
+"""What is taken from a grade that the table's is said to be like, unless it is said as well."""
 ELASTICITY = ("modulus.value", "modulus.source", "modulus.uncertainty")
 _LEAST_BORROWED = 0.15
 """Uncertainty of a modulus that is another rope's, at least."""
@@ -60,29 +64,14 @@ class OffTheLaw:
 
 @dataclass(frozen=True, slots=True)
 class GradeDraft:
-    """A grade on its way to a file.
-
-    Parameters
-    ----------
-    table : MakerTable
-    rows : tuple of MakerRow
-        Its sizes.
-    units : mapping
-        Of each column of figures.
-    texts : mapping
-        Fields of `TEXTS` that are known.
-    like : Grade or None
-        Whose elasticity and other properties it borrows.
-    doubt : str
-        Why rows that are off the law may stay; empty for none.
-    """
+    """A grade on its way to a file."""
 
     table: MakerTable
     rows: tuple[MakerRow, ...]
-    units: Mapping[str, str]
-    texts: Mapping[str, str]
-    like: Grade | None = None
-    doubt: str = ""
+    units: Mapping[str, str]  #: of each column of figures
+    texts: Mapping[str, str]  #: fields of `TEXTS` that are known
+    like: Grade | None = None  #: whose elasticity and other properties it borrows
+    doubt: str = ""  #: why rows that are off the law may stay; empty for none
 
     @property
     def missing(self) -> tuple[str, ...]:
@@ -91,6 +80,22 @@ class GradeDraft:
         if self.like is not None and "modulus.value" not in self.texts:
             needed = [name for name in needed if name not in ELASTICITY]
         return tuple(name for name in needed if not self.texts.get(name))
+
+    @property
+    def copied(self) -> tuple[str, ...]:
+        """Name and value of all that is the lender's."""
+        if self.like is None:
+            return ()
+        texts = [(name, getattr(self.like, name)) for name in COPIED]
+        parts = pairwise(self._elasticity_lines() if "modulus.value" not in self.texts else ())
+        return (
+            *(f"{name} {text}" for name, text in texts if text and self.texts.get(name) == text),
+            *(f"{a[:-1]} {b.partition(': ')[2]}" for a, b in parts if not a.startswith(" ")),
+        )
+
+    def remarks(self) -> list[str]:
+        """Return what is doubtful of the units of its figures."""
+        return ton_remarks(self._grade_of_figures())
 
     def off_the_law(self) -> tuple[OffTheLaw, ...]:
         """Return the rows that stand off the law of d².
@@ -129,12 +134,13 @@ class GradeDraft:
             manufacturer="",
             product="",
             construction=self.texts.get("construction", ""),
-            core="",
+            core=self.texts.get("core", ""),
             finish="",
             trust="A",
             source=Reference("", ""),
             material=material,
             sizes=sizes,
+            units=Units(**self.units),
         )
 
     def text(self) -> str:
@@ -144,6 +150,9 @@ class GradeDraft:
         lines.append("source:")
         for name in ("publisher", "document", "url", "date"):
             lines += self._field_lines((f"source.{name}",), indent="  ")
+        if self.like is not None:
+            copied = f"from grade {self.like.id}: {'; '.join(self.copied)}"
+            lines.append(f"notes: [{_quoted(copied)}]")
         lines += self._elasticity_lines()
         units = ", ".join(f"{figure}: {scalar(unit)}" for figure, unit in self.units.items())
         off = {item.row.line for item in self.off_the_law()} if self.doubt else set()

@@ -15,7 +15,7 @@ from designer.grades.grade import MOST_SIZES
 from designer.grades.parts import DIMENSIONS
 from designer.io.pdf_table import pdf_rows
 from designer.measured.formats import cells_of
-from designer.units import QuantityError, read_quantity
+from designer.units import QuantityError, describe, read_quantity
 
 SIZE = "id"
 FIGURES = (SIZE, *DIMENSIONS)
@@ -25,7 +25,7 @@ _MOST_ABOVE = 20
 _EXPECTED = "a CSV file, an Excel workbook or a PDF with a row for each size"
 
 _HEADS = {
-    SIZE: r"size|item|article|artikel|part n|code|ref|bezeichnung|nenngr",
+    SIZE: r"size|item|article|artikel|part n|code|ref|bezeichnung|nenngr|\btext|\bname",
     "diameter": r"diam|\bdia\b|durchmesser|[øØ⌀]|^d$|^d\b(?!/)|diamètre|diámetro",
     "minimum_breaking_load": r"mbl|mbf|mbs|f ?min\b|break|bruch|strength|rupture|rotura",
     "linear_mass": r"mass|weight|gewicht|masse|poids|peso|^wt\b",
@@ -40,8 +40,8 @@ _NO_MINIMUM = re.compile(
 _UNITS = {
     "diameter": {'"': "in", "''": "in", "inches": "in", "zoll": "in"},
     "minimum_breaking_load": {
-        "lb": "lbf", "lbs": "lbf", "pounds": "lbf", "kg": "kgf", "kp": "kgf", "t": "tonf",
-        "tonnes": "tonf", "kips": "kip", "kn": "kN", "dan": "daN",
+        "lb": "lbf", "lbs": "lbf", "pounds": "lbf", "kg": "kgf", "kp": "kgf",
+        "kips": "kip", "kn": "kN", "dan": "daN",
     },
     "linear_mass": {
         "kg/%m": "kg/100m", "kg/100 m": "kg/100m", "lbs/ft": "lb/ft", "lbs/100ft": "lb/100ft",
@@ -49,16 +49,27 @@ _UNITS = {
     },
     "metallic_area": {"mm2": "mm^2", "mm²": "mm^2", "in2": "in^2", "sq mm": "mm^2"},
 }  # fmt: skip
-"""How tables write units, beside what every file may hold; a ton of whatever kind is asked for."""
+"""How tables write units, beside what every file may hold."""
+_OF = r"tons?\s*\(?\s*(?:of )?"
+_TONS = {
+    "short_ton_force": rf"(?:short|u\.?s\.?|net) tons?|{_OF}2[ ,]?000 ?lbs?\.?\)?",
+    "long_ton_force": rf"(?:long|u\.?k\.?|imperial|gross) tons?|{_OF}2[ ,]?240 ?lbs?\.?\)?",
+    "tonf": rf"te?|tf|mp|tonnes?|metric tons?|{_OF}1[ ,]?000 ?kg\)?",
+}
+"""The same of tons; which one a plain ton is, has to be asked for."""
 
 
 @dataclass(frozen=True, slots=True)
 class FoundColumn:
-    """A column: its place from 0, its head, and the unit that the table prints, if it does."""
+    """A column: its place from 0, its head, and the unit that the table prints, if it does.
+
+    Some have a second figure in brackets, in another unit, which is left out.
+    """
 
     place: int
     head: str
-    unit: str | None
+    unit: str | None = None
+    has_brackets: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,27 +83,13 @@ class MakerRow:
 
 @dataclass(frozen=True, slots=True)
 class MakerTable:
-    """A table whose columns are known.
+    """A table whose columns are known."""
 
-    Parameters
-    ----------
-    name : str
-        The file, for messages.
-    head_line : int
-        Line of its heads.
-    heads : tuple of str
-        All of them.
-    columns : mapping
-        Of those that are used, by what they are: one of `FIGURES`.
-    cells : tuple
-        Line and cells of each row below.
-    """
-
-    name: str
+    name: str  #: the file, for messages
     head_line: int
     heads: tuple[str, ...]
-    columns: Mapping[str, FoundColumn]
-    cells: tuple[tuple[int, list[str]], ...]
+    columns: Mapping[str, FoundColumn]  #: that are used, by what they are: one of `FIGURES`
+    cells: tuple[tuple[int, list[str]], ...]  #: line and cells of each row below
 
     @property
     def left_out(self) -> tuple[str, ...]:
@@ -116,19 +113,22 @@ class MakerTable:
         rows: list[MakerRow] = []
         for line, cells in self.cells:
             texts = {f: _cell(cells, c) for f, c in self.columns.items()}
-            if not any(map(_number, (texts[figure] for figure in NEEDED))):
+            needed = [texts[figure] for figure in NEEDED]
+            if not any(map(_number, needed)) and sum(text[:1].isdigit() for text in needed) < 2:
                 continue  # a heading between the rows, or a note below them
             figures = {f: _number(texts[f]) for f in texts if f != SIZE and texts[f]}
             for figure in [f for f in self.columns if f != SIZE]:
                 if figure in NEEDED and not texts[figure]:
                     problem = "holds nothing"
                 elif texts[figure] and figures[figure] is None:
-                    problem = f"holds {texts[figure]!r}"
+                    problem = f"holds {describe(texts[figure])}"
                 else:
                     continue
                 head = self.columns[figure].head
-                faults.append(self.fault(line, head, problem, f"a number: the {figure}"))
-            size_id = texts.get(SIZE) or f"{texts['diameter']} {units['diameter']}"
+                expected = f"a number, the {figure}; or the row left out"
+                faults.append(self.fault(line, head, problem, expected))
+            first = _BRACKETS.sub("", texts["diameter"][:_LONGEST_NUMBER])
+            size_id = texts.get(SIZE) or f"{first} {units['diameter']}"
             numbers = {figure: text for figure, text in figures.items() if text is not None}
             rows.append(MakerRow(line, " ".join(size_id.split()), numbers))
         if not rows:
@@ -170,21 +170,7 @@ def read_maker_table(
     InputError
         If it cannot be read, or a column is not known.
     """
-    try:
-        file = open_input(path)
-    except (OSError, ValueError) as error:
-        raise InputError.at(path, f"the file cannot be read: {reason(error)}", _EXPECTED) from None
-    with file:
-        is_pdf = file.read(5) == b"%PDF-"
-        file.seek(0)
-        if page is not None and not is_pdf:
-            raise InputError.at("--page", f"{path} is no PDF", "the page of a PDF")
-        rows = (
-            enumerate(pdf_rows(file, str(path), page, _has_head), start=1)
-            if is_pdf
-            else cells_of(file, str(path))[0]
-        )
-        lines = [*islice(rows, MOST_SIZES + 4 * _MOST_ABOVE)]
+    lines = _lines(path, page)
     if not lines:
         raise InputError.at(path, "the file is empty", _EXPECTED)
     at = next((k for k, (_, cells) in enumerate(lines[:_MOST_ABOVE]) if _is_head(cells)), 0)
@@ -203,12 +189,9 @@ def read_maker_table(
             faults.append(Fault(str(path), head_line, figure, *error.args))
             continue
         if place is not None:
-            unit = _unit(figure, heads[place], printed_units[place])
-            columns[figure] = FoundColumn(place, heads[place], unit)
+            columns[figure] = FoundColumn(place, heads[place])
     if "diameter" not in columns and SIZE in columns and SIZE not in named and not faults:
-        size = columns.pop(SIZE)  # a table whose sizes are its diameters
-        unit = _unit("diameter", size.head, printed_units[size.place])
-        columns["diameter"] = FoundColumn(size.place, size.head, unit)
+        columns["diameter"] = columns.pop(SIZE)  # a table whose sizes are its diameters
     for figure in NEEDED:
         if figure not in columns and not any(fault.field == figure for fault in faults):
             problem = f"no column is known to be it, of {', '.join(filter(None, heads))}"
@@ -216,11 +199,33 @@ def read_maker_table(
             faults.append(Fault(str(path), head_line, figure, problem, expected))
     if faults:
         raise InputError(faults)
-    diameter = columns["diameter"]
-    if diameter.unit is None:
-        texts = [_cell(cells, diameter) for _, cells in below]
-        columns["diameter"] = replace(diameter, unit=_unit_of_cells(texts))
+    for figure, column in columns.items():
+        texts = [_cell(cells, column) for _, cells in below]
+        if figure in NEEDED and texts and not any(texts):
+            expected = f"the {figure} of each size"
+            faults.append(Fault(str(path), head_line, column.head, "the column is empty", expected))
+        columns[figure] = _with_unit(figure, column, printed_units[column.place], texts)
+    if faults:
+        raise InputError(faults)
     return MakerTable(str(path), head_line, heads, columns, tuple(below))
+
+
+def _lines(path: Path, page: int | None) -> list[tuple[int, list[str]]]:
+    try:
+        file = open_input(path)
+    except (OSError, ValueError) as error:
+        raise InputError.at(path, f"the file cannot be read: {reason(error)}", _EXPECTED) from None
+    with file:
+        is_pdf = file.read(5) == b"%PDF-"
+        file.seek(0)
+        if page is not None and not is_pdf:
+            raise InputError.at("--page", f"{path} is no PDF", "the page of a PDF")
+        rows = (
+            enumerate(pdf_rows(file, str(path), page, _has_head), start=1)
+            if is_pdf
+            else cells_of(file, str(path))[0]
+        )
+        return [*islice(rows, MOST_SIZES + 4 * _MOST_ABOVE)]
 
 
 def _has_head(rows: Sequence[Sequence[str]]) -> bool:
@@ -234,7 +239,7 @@ def _is_head(cells: Sequence[str]) -> bool:
 
 
 def _may_be(figure: str, head: str) -> bool:
-    if not re.search(_HEADS[figure], head, re.IGNORECASE):
+    if not re.search(_HEADS[figure], _plain(head), re.IGNORECASE):
         return False
     return figure != "minimum_breaking_load" or not _NO_MINIMUM.search(head)
 
@@ -264,7 +269,7 @@ def _place(
         free = [k for k, head in enumerate(heads) if head and k not in taken]
         answer = choose(figure, [heads[k] for k in free], "no column is known to be it")
         return None if answer is None else free[answer]
-    with_unit = [k for k in alike if _unit(figure, heads[k], printed_units[k]) is not None]
+    with_unit = [k for k in alike if _units(figure, printed_units[k]) | _units(figure, heads[k])]
     return next(iter(with_unit or alike), None)
 
 
@@ -279,37 +284,58 @@ def _named_place(heads: Sequence[str], text: str) -> int:
     raise ValueError(problem, f"one of {', '.join(filter(None, heads))}, or its number from 1")
 
 
+def _plain(head: str) -> str:
+    """Return a head such as ``linear_mass_kg_per_m`` as words and a unit."""
+    return head.replace("_", " ").replace(" per ", "/").replace(",", " ")
+
+
 def _without_unit(figure: str, head: str) -> str:
     """Return a head without its unit: alike for one figure in two units."""
-    words = re.sub(r"[\[(].*?[\])]", "", head).replace(",", " ").casefold().split()
+    words = _IN_BRACKETS.sub("", _plain(head)).casefold().split()
     while words and known_unit(figure, words[-1]) is not None:
         words.pop()
     return " ".join(words).strip(" :/.")
 
 
-def _unit(figure: str, head: str, printed: str) -> str | None:
-    """Return the unit that the row of units, or else the head, names; None for none."""
+def _with_unit(figure: str, column: FoundColumn, printed: str, texts: Sequence[str]) -> FoundColumn:
+    """Return a column with its unit, where the row of units, its head or else its cells have one.
+
+    Where all cells have a second figure in brackets, a unit in brackets is that one's.
+    """
     if figure == SIZE:
-        return None
-    words = head.replace(",", " ").split()
-    brackets = re.findall(r"[\[(](.*?)[\])]", head)
-    for text in (printed.strip(" []()"), *brackets, " ".join(words[-2:]), *words[-1:]):
-        unit = known_unit(figure, text)
-        if unit is not None:
-            return unit
-    return None
+        return column
+    numbers = [text for text in texts if _number(text)]
+    has_brackets = [_BRACKETS.search(text) is not None for text in numbers]
+    in_two_units = bool(numbers) and all(has_brackets)
+    bare = {_BRACKETS.sub("", text) for text in numbers}
+    marks = {re.sub(r"[\d\s./,-]", "", text) for text in bare}
+    units = _units(figure, printed, in_two_units) or _units(figure, column.head, in_two_units)
+    if figure == "diameter" and not units and len(marks) == 1:
+        units = {known_unit("diameter", marks.pop())}
+    unit = units.pop() if len(units) == 1 else None
+    return replace(column, unit=unit, has_brackets=any(has_brackets))
 
 
-def _unit_of_cells(texts: Sequence[str]) -> str | None:
-    """Return the unit of length that all cells with a number carry; None for none."""
-    marks = {re.sub(r"[\d\s./,-]", "", text) for text in texts if _number(text) is not None}
-    return known_unit("diameter", marks.pop()) if len(marks) == 1 else None
+def _units(figure: str, head: str, in_two_units: bool = False) -> set[str | None]:
+    """Return the units that a head names, behind its words and in brackets."""
+    head = _plain(head)
+    words, bare = head.split(), _IN_BRACKETS.sub(" ", head).split()
+    endings = [" ".join(part[-n:]) for part in (words, bare) for n in (4, 3, 2, 1)]
+    behind = {next(filter(None, (known_unit(figure, ending) for ending in endings)), None)}
+    within = {known_unit(figure, part) for part in _IN_BRACKETS.findall(head)} - {None}
+    if in_two_units:
+        return behind - {None}
+    is_preposition = bool(within) and bare[-1:] == ["in"]  # such as "diameter in (mm)"
+    return within | (set() if is_preposition else behind - {None})
 
 
 def known_unit(figure: str, text: str) -> str | None:
     """Return a unit of a figure as a grade file has it; None for what is none."""
     unit = " ".join(text.split()).removeprefix("in ") if len(text) > 2 else text
     unit = _UNITS[figure].get(unit.casefold(), unit)
+    if figure == "minimum_breaking_load":
+        tons = (ton for ton, spelling in _TONS.items() if re.fullmatch(spelling, unit, re.I))
+        unit = next(tons, unit)
     if not unit or len(unit) > 20:
         return None
     try:
@@ -323,6 +349,10 @@ def _cell(cells: Sequence[str], column: FoundColumn) -> str:
     return cells[column.place].strip() if column.place < len(cells) else ""
 
 
+_BRACKETS = re.compile(r"(?<=\S)\s*[\[(][^\[\]()]*\d[^\[\]()]*[\])]$")
+"""A figure in another unit, behind the first."""
+_IN_BRACKETS = re.compile(r"[\[(](.*?)[\])]")
+_LONGEST_NUMBER = 40
 _FRACTION = re.compile(r"(?:(\d+)[\s-]+)?(\d+)\s*/\s*(\d+)")
 _THOUSANDS = re.compile(r"\d{1,3}(?:[ ,'\u00a0\u202f]\d{3})+(?:\.\d+)?")
 
@@ -330,9 +360,12 @@ _THOUSANDS = re.compile(r"\d{1,3}(?:[ ,'\u00a0\u202f]\d{3})+(?:\.\d+)?")
 def _number(text: str) -> str | None:
     """Return a number of a table with a decimal point and no marks between thousands.
 
-    A part of an inch such as ``1-1/8"`` becomes a decimal fraction. None for what is no number.
+    A part of an inch such as ``1-1/8"`` becomes a decimal fraction; a second number in brackets is
+    left out. None for what is no number.
     """
-    bare = text.strip().strip("\"*†'").removesuffix("mm").removesuffix("in").strip(' "')
+    if len(text) > _LONGEST_NUMBER:
+        return None
+    bare = _BRACKETS.sub("", text).strip("\"*†' ").removesuffix("mm").removesuffix("in").strip(' "')
     if match := _FRACTION.fullmatch(bare):
         whole, upper, lower = (int(part or 0) for part in match.groups())
         return f"{float(whole + Fraction(upper, lower)):.10g}" if lower else None

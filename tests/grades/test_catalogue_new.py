@@ -72,7 +72,7 @@ def test_a_table_with_decimal_commas_becomes_a_checked_grade() -> None:
     assert result.exit_code == 0, result.output
     assert "left out: Preis" in result.output
     grade = read_grade(Path("acme.yaml"))
-    assert (grade.id, grade.product, grade.trust) == ("acme", "Quarry: 'heavy'", "A")
+    assert (grade.id, grade.product, grade.trust) == ("acme", "Quarry: 'heavy'", "C")
     assert (grade.source.document, grade.source.date) == ("acme.csv", "2024")
     assert [size.id for size in grade.sizes] == ["10", "12", "16", "20"]
     assert grade.sizes[0].diameter_m == pytest.approx(0.01)
@@ -260,9 +260,10 @@ def test_what_is_in_doubt_is_asked_for_by_options() -> None:
     assert "--column minimum_breaking_load=HEAD" in line
     named = ("--column", "minimum_breaking_load=mbl 1960")
     lines = refused(ASKED, *LIKE, *SAID, *named)
-    assert [line.partition("expected ")[2] for line in lines] == [
-        f"--unit {figure}=UNIT)" for figure in ("minimum_breaking_load", "diameter", "linear_mass")
+    assert [line.partition("expected ")[2].partition(",")[0] for line in lines] == [
+        f"--unit {figure}=UNIT" for figure in ("minimum_breaking_load", "diameter", "linear_mass")
     ]
+    assert "short_ton_force (2000 lb), tonf (1000 kg), long_ton_force (2240 lb)" in lines[0]
     units = ("diameter=mm", "minimum_breaking_load=kN", "linear_mass=kg/m")
     options = [part for unit in units for part in ("--unit", unit)]
     result = new(ASKED, *LIKE, *SAID, *named, *options)
@@ -273,7 +274,7 @@ def test_what_is_in_doubt_is_asked_for_by_options() -> None:
 def test_what_is_in_doubt_is_asked_for_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(catalog_new, "_asks", lambda: True)
     answers = [
-        *("2", "mm", "kN", "kg/m"),
+        *("2", "mm", "tons", "kN", "kg/m"),  # which tons, is asked again
         *("", "Acme", "Quarry", "6x36", "IWRC", "bright", "steel", "", "", "", "", "", "", ""),
         "unirope-6x36-iwrc-1960",
     ]
@@ -286,6 +287,136 @@ def test_what_is_in_doubt_is_asked_for_on_a_terminal(monkeypatch: pytest.MonkeyP
     assert grade.elasticity.basis == "borrowed"
 
 
+COLUMNS = "diameter_mm,diameter_nominal_text,min_breaking_load_kN,linear_mass_kg_per_m,notes"
+NO_MASS = f"{COLUMNS}\n10,10 mm,70.4,,a\n12,12 mm,101,,b\n"
+RANGES = "Diameter mm,MBL kN,Mass kg/m\n9-10,70 to 75,~0.4\n11-12,100 to 110,~0.6\n"
+
+
+def test_heads_that_are_names_of_variables() -> None:
+    rows = "6.35,1/4 in,31.1,0.16,\n10,10 mm,70.4,0.409,\n12,12 mm,101,0.589,\n"
+    result = new(f"{COLUMNS}\n{rows}", *LIKE, *SAID)
+    assert result.exit_code == 0, result.output
+    grade = read_grade(Path("acme.yaml"))
+    assert [size.id for size in grade.sizes] == ["1/4 in", "10 mm", "12 mm"]
+    assert grade.sizes[1].minimum_breaking_load_N == pytest.approx(70.4e3)
+    assert grade.sizes[1].linear_density_kg_per_m == pytest.approx(0.409)
+
+
+TWO_UNITS = """Rope diameter {d},Mass {m},Minimum breaking force {F}
+9.5 (3/8),31.3 (0.21),52.1 (5.86)
+12.7 (1/2),55.1 (0.37),91.6 (10.3)
+15.9 (5/8),86.3 (0.58),141 (15.9)
+"""
+
+
+def test_second_figures_in_brackets_are_left_out() -> None:
+    text = TWO_UNITS.format(d="mm (in.)", m="kg/100 m (lb/ft)", F="kN (short tons)")
+    result = new(text, *LIKE, *SAID)
+    assert result.exit_code == 0, result.output
+    assert "in kN, without the figures in brackets" in result.output
+    size = read_grade(Path("acme.yaml")).sizes[0]
+    assert size.id == "9.5 mm"
+    assert size.diameter_m == pytest.approx(9.5e-3)
+    assert size.minimum_breaking_load_N == pytest.approx(52.1e3)
+    assert size.linear_density_kg_per_m == pytest.approx(0.313)
+
+
+def test_the_unit_in_brackets_is_none_of_the_first_figure() -> None:
+    text = TWO_UNITS.format(d="mm (in.)", m="kg/100 m (lb/ft)", F="tons (short tons)")
+    (line,) = refused(text, *LIKE, *SAID)
+    assert line.startswith("acme.csv:1: Minimum breaking force tons (short tons): the unit is not")
+
+
+@pytest.mark.parametrize(
+    ("head", "unit"),
+    [
+        ("MBL kN (short tons)", None),  # which of the two a single figure is in
+        ("MBL (short tons)", "short_ton_force"),
+        ("MBL in tons of 2000 lbs", "short_ton_force"),
+        ("MBL, tons (2240 lb)", "long_ton_force"),
+        ("MBL [kN]", "kN"),
+        ("min_mbl_kN", "kN"),
+    ],
+)
+def test_the_unit_of_a_head(head: str, unit: str | None) -> None:
+    Path("head.csv").write_text(f'Diameter in (mm),"{head}",Mass kg per 100 m\n10,70.4,40.9\n')
+    columns = read_maker_table(Path("head.csv"), {}).columns
+    assert columns["minimum_breaking_load"].unit == unit
+    assert (columns["diameter"].unit, columns["linear_mass"].unit) == ("mm", "kg/100m")
+
+
+TONS = """Diameter in,Breaking strength tons,Weight lb/ft
+3/8,5.86,0.21
+1/2,10.3,0.37
+5/8,15.9,0.58
+3/4,22.7,0.84
+"""
+SIX_BY_19 = ("--like", "unirope-6x19-fc-eips", "--no-plugins")
+
+
+def in_tons(name: str) -> tuple[float, str]:
+    """Return the thickest size's breaking load with these tons [N], and what was printed."""
+    result = new(TONS, *SIX_BY_19, *SAID, "--unit", f"minimum_breaking_load={name}")
+    assert result.exit_code == 0, result.output
+    return read_grade(Path("acme.yaml")).thickest.minimum_breaking_load_N, result.output
+
+
+def test_which_ton_is_asked_for() -> None:
+    (line,) = refused(TONS, *SIX_BY_19, *SAID)
+    assert "--unit minimum_breaking_load=UNIT" in line
+    assert "short_ton_force (2000 lb), tonf (1000 kg), long_ton_force (2240 lb)" in line
+
+
+def test_tons_of_2000_lb() -> None:
+    load_N, output = in_tons("short tons")
+    assert load_N == pytest.approx(22.7 * 2000 * 4.4482216152605)
+    assert "remark" not in output
+    assert "lies between" not in output
+
+
+def test_metric_tons_beside_inches_get_remarks() -> None:
+    load_N, output = in_tons("tonf")
+    assert load_N == pytest.approx(22.7e3 * 9.80665)
+    remarks = [
+        "tonf is 1000 kgf; beside in and lb/ft most tons are of 2000 lb, short_ton_force",
+        "the breaking load lies between those of known 6x19 FC ropes",
+    ]
+    assert all(remark in output for remark in remarks)
+    checked = CliRunner().invoke(app, ["catalog", "check", "acme.yaml"]).output
+    assert all(remark in checked for remark in remarks)
+    assert "acme.yaml: no fault found" in checked
+
+
+def test_metric_tons_of_a_metric_table_get_none() -> None:
+    rows = "".join(f"{d},{0.33 * 1770 * d * d / 9806.65},{0.359 * d * d}\n" for d in (10, 12, 16))
+    text = f"Diameter mm,MBL t,Mass kg/100m\n{rows}"
+    result = new(text, *SIX_BY_19, *SAID)
+    assert result.exit_code == 0, result.output
+    assert "remark" not in result.output
+
+
+def test_what_is_copied_is_listed() -> None:
+    result = new(GERMAN, *LIKE, *SAID, "--set", "finish=galvanised")
+    (line,) = [line for line in result.output.splitlines() if "copied from" in line]
+    lender = load_catalogue(with_plugins=False).grade("unirope-6x36-iwrc-1960")
+    modulus = f"modulus {lender.modulus.value_Pa / 1e9:g} GPa"
+    for copied in (f"construction {lender.construction}", "core IWRC", "material steel", modulus):
+        assert copied in line
+    assert "finish" not in line
+    assert f"sheave_ratio {lender.sheave_ratio.suggested:g}" in line
+    assert read_grade(Path("acme.yaml")).notes[0].endswith(line.partition(": ")[2])
+
+
+def test_trust_is_never_the_makers_unless_said() -> None:
+    result = new(GERMAN, *LIKE, *SAID)
+    assert read_grade(Path("acme.yaml")).trust == "C"
+    assert "trust: C, third hand; --set trust=A" in result.output
+    Path("acme.yaml").unlink()
+    result = new(GERMAN, *LIKE, *SAID, "--set", "trust=A")
+    assert read_grade(Path("acme.yaml")).trust == "A"
+    assert "trust" not in result.output
+
+
 @pytest.mark.parametrize(
     ("text", "options", "told"),
     [
@@ -294,6 +425,12 @@ def test_what_is_in_doubt_is_asked_for_on_a_terminal(monkeypatch: pytest.MonkeyP
         (GERMAN, ("--page", "2"), "--page: acme.csv is no PDF"),
         (GERMAN.replace("70,4", "x"), (), "acme.csv:3: Mindestbruchkraft (kN): holds 'x'"),
         (GERMAN.replace("70,4", ""), (), "acme.csv:3: Mindestbruchkraft (kN): holds nothing"),
+        (GERMAN.replace("70,4", "1/" + "9" * 400), (), "holds '1/9999"),
+        (GERMAN.replace("70,4", "9" * 4400), (), "holds '9999"),
+        (GERMAN.replace("70,4", "1/0"), (), "holds '1/0'"),
+        (RANGES, (), "acme.csv:2: Diameter mm: holds '9-10' (expected a number, the diameter; or"),
+        (NO_MASS, (), "acme.csv:1: linear_mass_kg_per_m: the column is empty (expected the linear"),
+        (GERMAN, ("--unit", "minimum_breaking_load=ton"), "lbf, kip, short_ton_force (2000 lb), "),
         (GERMAN.partition("10;10")[0], (), "acme.csv: there is no size below the head"),
         (GERMAN, ("--column", "diameter"), "--column: 'diameter' has no value"),
         (GERMAN, ("--column", "weight=3"), "--column: 'weight' is not known"),
@@ -327,6 +464,18 @@ def test_a_file_that_exists_stays() -> None:
         ("diameter", "d", None),
         ("minimum_breaking_load", "kg", "kgf"),
         ("minimum_breaking_load", "tons", None),  # of 1000 kg, 2000 lb or 2240 lb
+        ("minimum_breaking_load", "TON", None),
+        ("minimum_breaking_load", "ton_force", None),
+        ("minimum_breaking_load", "short ton", "short_ton_force"),
+        ("minimum_breaking_load", "US tons", "short_ton_force"),
+        ("minimum_breaking_load", "U.S. tons", "short_ton_force"),
+        ("minimum_breaking_load", "tons of 2,000 lbs", "short_ton_force"),
+        ("minimum_breaking_load", "tons (2000 lb)", "short_ton_force"),
+        ("minimum_breaking_load", "Long Tons", "long_ton_force"),
+        ("minimum_breaking_load", "tons of 2240 lb", "long_ton_force"),
+        ("minimum_breaking_load", "metric tons", "tonf"),
+        ("minimum_breaking_load", "tonnes", "tonf"),
+        ("minimum_breaking_load", "t", "tonf"),
         ("minimum_breaking_load", "Load", None),
         ("linear_mass", "kg/%m", "kg/100m"),
         ("linear_mass", "lbs/ft", "lb/ft"),
