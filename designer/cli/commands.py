@@ -271,7 +271,7 @@ def diagnose(
         raise InputError.at("designer diagnose", "has options of a plan", "--plan beside them")
     from designer.cli.tables import print_check, print_diagnosis
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out
-    from designer.io.output import file_names, output_folder
+    from designer.io.output import file_names, output_folder, require_file
     from designer.measured.formats import is_bag
     from designer.measured.read import read_measured
 
@@ -292,7 +292,10 @@ def diagnose(
     from designer.report.diagnosis.report import write_check, write_diagnosis
 
     doing = "checking" if checks else "searching"
+    diagnosed = f"{config.stem}.diagnosed.yaml"
     with output_folder(folder) as building, ProgressBars(doing) as bars:
+        if not checks:
+            require_file(folder / diagnosed)
         result: Check | Diagnosis
         if catalogue is None:
             result = check(study, measured, bars)
@@ -307,7 +310,7 @@ def diagnose(
             residuals = result.residuals_csv()
             (building / "residuals.csv").write_text(residuals, encoding="utf-8")
             text = diagnosed_config(result, folder)
-            (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
+            (building / diagnosed).write_text(text, encoding="utf-8")
         (building / "diagnosis.json").write_text(f"{result.to_json()}\n", encoding="utf-8")
         written = file_names(building)
     if isinstance(result, Check):

@@ -55,7 +55,7 @@ def export(
     """
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
     from designer.export.formats import FORMATS
-    from designer.io.output import output_folder
+    from designer.io.output import output_folder, require_file
 
     study, plugins = study_of(config, no_plugins)
     catalogue = catalogue_of(study, plugins)
@@ -64,6 +64,8 @@ def export(
     if not path.name.endswith(kind.ending):
         expected = f"a name that ends in {kind.ending}"
         raise InputError.at("--output", f"{path} is no file of {to.value}", expected)
+    with output_folder(path.parent):  # goes again; what is in the way shows before the work
+        require_file(path)
     announce_compiling()
 
     from designer.export.robot import ExportedRobot

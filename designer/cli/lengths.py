@@ -41,13 +41,15 @@ def lengths(
     Exit status 0: every pose is held. 1: some are not, or no rope was found. 2: the input is wrong.
     """
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
-    from designer.io.output import write_file
+    from designer.io.output import require_file, write_file
     from designer.io.poses import along_path, poses_in, read_poses
     from designer.study import declared_settings
 
     study, plugins = study_of(config, no_plugins)
     table = along_path(study) if poses is None else read_poses(poses, study.robot)
     turned = poses_in(study.workspace, table)
+    path = output or Path(f"{config.stem}-lengths.csv")
+    require_file(path)
     catalogue = catalogue_of(study, plugins)
     announce_compiling(proves=True)
 
@@ -60,7 +62,6 @@ def lengths(
     if answer is None:
         show("No rope serves this study, so there are no lengths: see designer report.")
         return False
-    path = output or Path(f"{config.stem}-lengths.csv")
     write_file(path, answer.to_csv(table.names, table.values))
     print_left_out(f"{poses}: column {name} holds texts: left out" for name in table.left_out)
     _print_lengths(answer, path)

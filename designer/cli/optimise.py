@@ -42,7 +42,7 @@ def optimise(
     Exit status 0: a better design was found, and holds. 1: none was. 2: the input is wrong.
     """
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
-    from designer.io.output import file_names, output_folder
+    from designer.io.output import file_names, output_folder, require_file
     from designer.io.process import ends_gently
     from designer.report.figures.opengl import begin_probe, why_no_scenes
 
@@ -63,6 +63,7 @@ def optimise(
             stack.enter_context(output_folder(folder / name, REPORT_FILES))
             for name in ("given", "optimised")
         ]
+        require_file(folder / f"{Path(laid_out.document.name).stem}.optimised.yaml")
         bars = stack.enter_context(ProgressBars())
         with ends_gently() as stop:
             optimum = optimum_of(laid_out, bars, stop)

@@ -39,7 +39,7 @@ def write_plan(
     if not is_alone:
         raise InputError.at("--plan", "has no use for --check or --data", "a plan alone")
     from designer.cli.terminal import ProgressBars, announce_compiling
-    from designer.io.output import file_names, output_folder, write_file
+    from designer.io.output import file_names, output_folder, require_file, write_file
 
     study, plugins = study_of(config, no_plugins)
     _check_options(study, n_poses, unknown or ())
@@ -48,6 +48,13 @@ def write_plan(
         raise InputError([study.source.fault("measurements", "is missing", expected)])
     length_m = _noise("--length-noise", length_noise, LENGTH)
     tension_N = _noise("--tension-noise", tension_noise, FORCE)
+    target = output or Path(f"{config.stem}-plan")
+    is_table = target.suffix == ".csv"
+    if is_table:
+        require_file(target)
+    else:  # goes again; what is in the way shows before the work
+        with output_folder(target):
+            pass
     announce_compiling()
 
     from designer.analysis.lengths import Lengths
@@ -66,18 +73,17 @@ def write_plan(
         table = _table(
             answer, Lengths(DesignCable(cable, name), answer.statics, ~answer.statics.is_solved)
         )
-        if output is not None and output.suffix == ".csv":
-            write_file(output, table)
-            _print_plan(answer, [str(output)])
+        if is_table:
+            write_file(target, table)
+            _print_plan(answer, [str(target)])
             return answer.is_positive
-        folder = output or Path(f"{config.stem}-plan")
-        with output_folder(folder) as building:
+        with output_folder(target) as building:
             bars("report")
             write_plan_report(answer, name, building, template)
             (building / "plan.csv").write_text(table, encoding="utf-8")
             (building / "plan.json").write_text(f"{answer.to_json()}\n", encoding="utf-8")
             written = file_names(building)
-    _print_plan(answer, [f"{folder}/{name}" for name in written])
+    _print_plan(answer, [f"{target}/{name}" for name in written])
     return answer.is_positive
 
 

@@ -20,9 +20,11 @@ def verify(
     from rich.markup import escape
 
     from designer.cli.terminal import ProgressBars, announce_compiling, bare_table, show
-    from designer.io.output import write_file
+    from designer.io.output import require_file, write_file
     from designer.reference.page import HEADINGS, cells, compute, markdown
 
+    if output is not None:
+        require_file(output)
     announce_compiling(proves=True)
     with ProgressBars("computing") as bars:
         computed = compute(bars)

@@ -16,10 +16,12 @@ from designer.errors import InputError
 
 LARGEST_FILE_BYTES = 1_000_000
 _KINDS = {
-    stat.S_IFIFO: "it is a pipe, not a file",
-    stat.S_IFCHR: "it is a device, not a file",
-    stat.S_IFBLK: "it is a device, not a file",
-    stat.S_IFSOCK: "it is a socket, not a file",
+    stat.S_IFREG: "",
+    stat.S_IFDIR: "a folder",
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+    stat.S_IFSOCK: "a socket",
 }
 
 
@@ -84,8 +86,12 @@ def read_bytes(path: Path, name: str, kind: str = "a YAML file") -> bytes:
     raise InputError.at(name, problem, expected)
 
 
+def other_kind(mode: int) -> str:
+    """Return what is no regular file, such as ``a pipe``; empty for what is one."""
+    return _KINDS.get(stat.S_IFMT(mode), "of another kind")
+
+
 def _require_regular(mode: int) -> None:
-    if stat.S_ISDIR(mode):
-        raise IsADirectoryError(errno.EISDIR, "it is a folder, not a file")
-    if not stat.S_ISREG(mode):
-        raise OSError(errno.EINVAL, _KINDS.get(stat.S_IFMT(mode), "it is no regular file"))
+    if kind := other_kind(mode):  # the number makes it an IsADirectoryError, where it is
+        number = errno.EISDIR if stat.S_ISDIR(mode) else errno.EINVAL
+        raise OSError(number, f"it is {kind}, not a file")

@@ -7,12 +7,13 @@ import os
 import secrets
 import shutil
 import time
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Collection, Container, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from designer.documents.opened import other_kind
 from designer.errors import OutputError
 from designer.io.process import NO_ROOM, Undo, undone_at_end
 
@@ -28,25 +29,27 @@ _TO_LOCK_S = 60.0
 
 
 @contextmanager
-def output_folder(folder: Path, outdated: Iterable[str] = ()) -> Iterator[Path]:
+def output_folder(folder: Path, outdated: Collection[str] = ()) -> Iterator[Path]:
     """Hand out a temporary folder; on success its files appear in ``folder``, else nothing does.
 
     Parameters
     ----------
     folder : Path
         May exist; files of other names stay in it.
-    outdated : iterable of str
+    outdated : collection of str
         Names of files that an earlier run may have left there: gone where this one has none.
 
     Raises
     ------
     OutputError
-        If ``folder`` is a file, cannot be written, or has a folder where a file is to go.
+        If ``folder`` is a file, cannot be written, or has something else where a file is to go.
     """
     with undone_at_end() as undo:
         with explained(folder):
             building = _begin(folder, undo)
-        with explained(folder, only=NO_ROOM):
+            for name in outdated:
+                _target(folder / name)
+        with explained(folder, only=(*NO_ROOM, errno.ENAMETOOLONG)):
             yield building
         with explained(folder), undone_at_end() as back:
             aside = _move(building, folder, outdated, back)
@@ -112,24 +115,22 @@ def clear_left_overs(folder: Path) -> None:
             continue  # a run may be about to lock it
         with suppress(Timeout, NotImplementedError, OSError), lock.acquire(timeout=0):
             for file in (hidden / _OLD).glob("*"):
-                file.replace(folder / file.name)
+                file.replace(os.path.realpath(folder / file.name))
             _remove_hidden(hidden, lock)
 
 
-def _move(building: Path, folder: Path, outdated: Iterable[str], back: Undo) -> Path:
+def _move(building: Path, folder: Path, outdated: Collection[str], back: Undo) -> Path:
     """Put all new files in place, or none; old ones wait in the folder that is returned."""
     new = list(building.iterdir())
-    in_the_way = [file.name for file in new if file.is_file() and (folder / file.name).is_dir()]
-    if in_the_way:
-        place = folder / in_the_way[0]
-        raise OutputError(f"{place}: is a folder (expected a file, or nothing)")
+    targets = {name: folder / name for name in (*(file.name for file in new), *outdated)}
+    targets |= {file.name: _target(folder / file.name) for file in new if file.is_file()}
     aside = building.with_name(_OLD)
     aside.mkdir()
-    for name in {*(file.name for file in new), *outdated}:
-        if (folder / name).is_file():
-            _move_one(folder / name, aside / name, back)
+    for name, target in targets.items():
+        if target.is_file():
+            _move_one(target, aside / name, back)
     for file in new:
-        _move_one(file, folder / file.name, back)
+        _move_one(file, targets[file.name], back)
     return aside
 
 
@@ -169,13 +170,43 @@ def file_names(folder: Path) -> list[str]:
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Write a file under another name in its folder, then rename it."""
-    unfinished = _unfinished(path)
+    """Write a file under another name in its folder, then rename it; a link stays one."""
+    target = _target(path)
+    unfinished = _unfinished(target)
     try:
-        unfinished.write_bytes(content)
-        unfinished.replace(path)
+        _write_anew(unfinished, content)
+        unfinished.replace(target)
     finally:
         unfinished.unlink(missing_ok=True)
+
+
+def _target(path: Path) -> Path:
+    """Return which file is written at a path, through links; what is none would be lost."""
+    with suppress(FileNotFoundError):
+        if kind := other_kind(path.stat().st_mode):
+            raise OutputError(f"{path}: is {kind} (expected a file, or nothing)")
+    return Path(os.path.realpath(path))
+
+
+def _write_anew(path: Path, content: bytes) -> None:
+    """Write a file that nobody else has made, who may have made it a link."""
+    path.unlink(missing_ok=True)
+    with path.open("xb") as file:
+        file.write(content)
+
+
+def require_file(path: Path) -> None:
+    """Refuse a path before the work that `write_file` would refuse after it.
+
+    Raises
+    ------
+    OutputError
+        If no file can be written there.
+    """
+    with explained(path):
+        unfinished = _unfinished(_target(path))
+        _write_anew(unfinished, b"")
+        unfinished.unlink()
 
 
 def kept_path(*names: str) -> Path:
@@ -187,7 +218,7 @@ def kept_path(*names: str) -> Path:
 
 def keep(path: Path, content: bytes) -> None:
     """Keep a file for other runs, if the disk takes it."""
-    with suppress(OSError):
+    with suppress(OSError, OutputError):
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, content)
 
@@ -216,7 +247,7 @@ def write_new_file(path: Path, text: str) -> None:
     try:
         with explained(path), undone_at_end() as undo:
             undo.add(partial(unfinished.unlink, missing_ok=True))
-            unfinished.write_bytes(text.encode())
+            _write_anew(unfinished, text.encode())
             _take_new_name(unfinished, path)
     except OutputError as error:
         if isinstance(error.__cause__, FileExistsError):
@@ -239,4 +270,4 @@ def _take_new_name(unfinished: Path, path: Path) -> None:
 
 def _unfinished(path: Path) -> Path:
     """Return where a file is written first; what a kill leaves there, the next run overwrites."""
-    return path.with_name(f".{path.name}.part")
+    return path.parent / f".{os.fsdecode(os.fsencode(path.name)[:240])}.part"
