@@ -19,14 +19,27 @@ class DesignerError(Exception):
     """Base of all errors whose message is meant for the user as it stands."""
 
 
+def visible(text: str) -> str:
+    """Return a text with a ``?`` for each letter that a terminal obeys, or that shows as nothing.
+
+    Line feeds and blanks of all kinds stay.
+    """
+    if text.isprintable():
+        return text
+    return "".join(
+        letter if letter.isprintable() or letter == "\n" or (letter > "\x9f" and letter.isspace())
+        else "?"
+        for letter in text
+    )  # fmt: skip
+
+
 def one_line(text: object) -> str:
     """Return a text on one line, without control characters, cut short."""
     try:
         words = " ".join(str(text).split())
     except Exception:  # a stranger's exception may fail at telling what it is
         words = "an error without a readable message"
-    printable = "".join(letter if letter.isprintable() else "?" for letter in words)
-    return printable if len(printable) <= 300 else printable[:300] + "…"
+    return visible(words if len(words) <= 300 else words[:300] + "…")
 
 
 def described(error: BaseException) -> str:
@@ -62,7 +75,7 @@ class Fault:
         place = self.file if self.line is None else f"{self.file}:{self.line}"
         problem = f"{self.field}: {self.problem}" if self.field else self.problem
         hint = f" (expected {self.expected})" if self.expected else ""
-        return " ".join(f"{place}: {problem}{hint}".split())
+        return visible(" ".join(f"{place}: {problem}{hint}".split()))
 
 
 class InputError(DesignerError):

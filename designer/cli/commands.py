@@ -45,6 +45,7 @@ from designer.errors import (
     MissingLibraryError,
     OutputError,
     described,
+    visible,
 )
 from designer.io.process import readable_output, settle_in
 from designer.resources import example_names
@@ -106,7 +107,7 @@ def main() -> None:
             try:
                 app()
             except DesignerError as error:
-                print(error, file=sys.stderr)
+                print(visible(str(error)), file=sys.stderr)
                 sys.exit(WRONG_INPUT)
     except OutputError:  # of standard error itself: nobody can be told
         sys.exit(WRONG_INPUT)
@@ -292,10 +293,8 @@ def diagnose(
     from designer.report.diagnosis.report import write_check, write_diagnosis
 
     doing = "checking" if checks else "searching"
-    diagnosed = f"{config.stem}.diagnosed.yaml"
     with output_folder(folder) as building, ProgressBars(doing) as bars:
-        if not checks:
-            require_file(folder / diagnosed)
+        require_file(folder / f"{config.stem}.diagnosed.yaml")
         result: Check | Diagnosis
         if catalogue is None:
             result = check(study, measured, bars)
@@ -310,7 +309,7 @@ def diagnose(
             residuals = result.residuals_csv()
             (building / "residuals.csv").write_text(residuals, encoding="utf-8")
             text = diagnosed_config(result, folder)
-            (building / diagnosed).write_text(text, encoding="utf-8")
+            (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
         (building / "diagnosis.json").write_text(f"{result.to_json()}\n", encoding="utf-8")
         written = file_names(building)
     if isinstance(result, Check):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from designer.cli.options import NoPlugins, argument, option, output_option, quantity_of
-from designer.errors import InputError
+from designer.errors import InputError, visible
 from designer.units import LENGTH, MASS, NUMBER, Dimension
 
 if TYPE_CHECKING:
@@ -126,9 +126,11 @@ def _require_valid(
 
 def _tell(path: Path, robot: ForeignRobot, missing: tuple[Gap, ...]) -> None:
     load = "a point mass" if robot.attachments_m is None else "a platform"
-    typer.echo(f"{path} written: {robot.name}, {len(robot.exit_points_m)} cables on {load}.")
+    cables = f"{len(robot.exit_points_m)} cables on {load}"
+    typer.echo(f"{path} written: {visible(robot.name)}, {cables}.")
     for remarks in robot.remarks.values():
-        typer.echo("\n".join(f"  {remark}" for remark in remarks))
+        typer.echo("
+".join(f"  {visible(remark)}" for remark in remarks))
     if not missing:
         typer.echo(f"Next:  designer size {shlex.quote(str(path))}")
         return

@@ -8,7 +8,7 @@ import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
-from rich.console import Console, RenderableType
+from rich.console import Console, ConsoleOptions, RenderableType
 from rich.markup import escape
 from rich.progress import (
     BarColumn,
@@ -19,20 +19,32 @@ from rich.progress import (
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
+from rich.segment import Segment
 from rich.spinner import Spinner
 from rich.table import Table
 from rich.text import Text
 
+from designer.errors import visible
 from designer.io.process import end_at_closed_pipe, is_terminal
 from designer.progress import Advance
 
 
 class _Console(Console):
-    """Ends as other programs do where nobody reads on; rich would give a negative answer."""
+    """Ends as other programs do where nobody reads on; rich would give a negative answer.
+
+    What a file calls its columns, ropes and load cases is shown, and commands no terminal.
+    """
 
     def on_broken_pipe(self) -> None:
         """Be told of a closed pipe."""
         end_at_closed_pipe()
+
+    def render(
+        self, renderable: RenderableType, options: ConsoleOptions | None = None
+    ) -> Iterator[Segment]:
+        """Yield the pieces of text to print, and rich's own commands to the terminal."""
+        for segment in super().render(renderable, options):
+            yield segment if segment.control else segment._replace(text=visible(segment.text))
 
 
 # A pipe has no width: then tables are as wide as they need to be, not cut at 80 columns. Names may

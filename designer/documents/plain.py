@@ -12,6 +12,7 @@ import csv
 import io
 import json
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from enum import Enum
@@ -61,7 +62,9 @@ def lies_in(part: str, paths: Sequence[str] | None) -> bool:
     return paths is None or any(f"{path}.".startswith(f"{part}.") for path in paths)
 
 
-_STARTS_A_FORMULA = ("=", "+", "-", "@", "\t")
+_STARTS_A_FORMULA = tuple("=+-@＝＋－＠\t")  # Excel takes the wide ones as well
+_LATER_FORMULA = re.compile('(?:(?<=;)|(?<=.[\t\n]))(?="*[=+@＝＋－＠-])', re.DOTALL)
+"""Within a cell, where a spreadsheet may begin another one; not after a comma, which is quoted."""
 
 
 def finite(values: Any) -> Any:
@@ -121,11 +124,13 @@ def csv_text(rows: Iterable[Iterable[Any]]) -> str:
 def harmless(cell: Any) -> Any:
     """Return a cell that stays a text where it is one: with a ``'`` before what begins a formula.
 
-    A formula of a stranger's, such as a grade's name, could send away what the table holds.
+    So it does behind a ``;`` or a tab within it, at which some spreadsheets divide cells. A formula
+    of a stranger's, such as a grade's name, could send away what the table holds.
     """
     if not isinstance(cell, str):
         return cell
     cell = cell.replace("\r", " ")  # the module leaves it unquoted, and it would begin a new row
+    cell = _LATER_FORMULA.sub("'", cell)
     if not cell.startswith(_STARTS_A_FORMULA):
         return cell
     try:

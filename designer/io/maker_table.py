@@ -10,7 +10,7 @@ from itertools import islice
 from pathlib import Path
 
 from designer.documents.opened import open_input, reason
-from designer.errors import Fault, InputError
+from designer.errors import Fault, InputError, visible
 from designer.grades.grade import MOST_SIZES
 from designer.grades.parts import DIMENSIONS
 from designer.io.pdf_table import pdf_rows
@@ -175,7 +175,7 @@ def read_maker_table(
         raise InputError.at(path, "the file is empty", _EXPECTED)
     at = next((k for k, (_, cells) in enumerate(lines[:_MOST_ABOVE]) if _is_head(cells)), 0)
     (head_line, cells), below = lines[at], lines[at + 1 :]
-    heads = tuple(" ".join(cell.split()) for cell in cells)
+    heads = tuple(visible(" ".join(cell.split())) for cell in cells)
     printed_units = [""] * len(heads)
     if below and not any(map(_number, below[0][1])):
         printed_units = [*below[0][1], *printed_units][: len(heads)]

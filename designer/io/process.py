@@ -28,7 +28,7 @@ def settle_in() -> None:
     """Make the streams take every letter, and a request to end leave nothing half-written."""
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
-        if reconfigure is not None and not (stream.encoding or "").lower().startswith("utf"):
+        if reconfigure is not None:
             reconfigure(errors="replace")  # a '?' is better than no answer
     for number in (signal.SIGTERM, signal.SIGINT):
         with suppress(ValueError):  # only the main thread of a program may do this
