@@ -3,26 +3,81 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
+from pydantic import BaseModel, ValidationError
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.reactions import reactions_csv
 from designer.analysis.selection_json import candidates_csv
 from designer.diagnosis.design import declared_by, declared_of_session, spreads_of
 from designer.diagnosis.result import Diagnosis, effects_table
-from designer.documents.document import Key, decode, document_of
+from designer.documents.document import (
+    DEEPEST_NESTING,
+    Flaw,
+    Key,
+    Keys,
+    decode,
+    document_of,
+    path_text,
+)
 from designer.documents.edits import scalar, with_section, with_value
-from designer.documents.opened import read_input
+from designer.documents.opened import open_input, read_input
 from designer.documents.plain import RESULT_FORMAT, Json, why_unreadable
+from designer.documents.section import MOST_FAULTS
 from designer.errors import Fault, InputError
 from designer.io.config.moved import moved_to, path_from
 from designer.io.output import write_whole
 from designer.model.measured_data import KINDS
+from designer.units import describe
 
 _RESULT = "a result.json that `designer report` wrote"
+_LARGEST_RESULT_BYTES = 50_000_000
+_LARGEST_NUMBER = 1e300
+_HALF_LETTER = re.compile("[\ud800-\udfff]")
+_KINDS_OF_JSON = {
+    "list": "a list", "model": "a mapping", "dict": "a mapping", "string": "a text",
+    "float": "a number",
+}  # fmt: skip
+
+
+class _Part(BaseModel, strict=True):
+    """Of a result: those of its values that a comparison does more with than to show them."""
+
+
+class _Check(_Part):
+    id: str
+    load_case: str
+    state: Literal["holds", "fails", "open"]
+    demand: float | None = None
+    capacity: float | None = None
+
+
+class _Candidate(_Part):
+    grade: str
+    size_id: str
+    standing: str
+
+
+class _Chosen(_Part):
+    cost: float | None = None
+
+
+class _Selection(_Part):
+    candidates: list[_Candidate] = []
+    chosen: _Chosen | None = None
+    currency: str | None = None
+
+
+class _Result(_Part):
+    provenance: dict[str, Any]
+    checks: list[_Check] = []
+    selection: _Selection | None = None
 
 
 def write_results(analysis: Analysis, folder: Path) -> None:
@@ -49,9 +104,14 @@ def read_result(path: Path) -> Json:
     ------
     InputError
         If it cannot be read, is no result, or is of a newer format; it names the version needed.
+        With a fault for each value that no result has.
     """
     try:
-        values = json.loads(read_input(path))
+        with open_input(path) as file:
+            raw = file.read(_LARGEST_RESULT_BYTES + 1)
+        if len(raw) > _LARGEST_RESULT_BYTES:
+            raise ValueError(f"it has more than {_LARGEST_RESULT_BYTES / 1e6:g} MB")
+        values = json.loads(raw)
     except (OSError, ValueError, RecursionError) as error:
         reason = (error.strerror or "").lower() if isinstance(error, OSError) else str(error)
         raise InputError.at(path, f"cannot be read: {reason}", _RESULT) from None
@@ -64,7 +124,36 @@ def read_result(path: Path) -> Json:
         raise InputError([Fault(str(path), None, "format", *why)])
     if "workspace" not in values:  # an optimise.json would compare as a result of nothing
         raise InputError.at(path, "is no result", _RESULT)
+    if flaws := [*_unusual(values), *_misshapen(values)][:MOST_FAULTS]:
+        raise InputError(Fault(str(path), None, path_text(keys), *words) for keys, *words in flaws)
     return {"format": 1, **values}
+
+
+def _unusual(value: object, keys: Keys = ()) -> Iterator[Flaw]:
+    """Yield what JSON can hold, and no result: depths, numbers that are none, halves of letters."""
+    if isinstance(value, dict | list) and len(keys) < DEEPEST_NESTING:
+        for key, part in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _unusual(part, (*keys, key))
+    elif isinstance(value, dict | list):
+        yield Flaw(keys, "is nested too deeply", f"at most {DEEPEST_NESTING} levels")
+    elif isinstance(value, int | float) and not abs(value) <= _LARGEST_NUMBER:
+        yield Flaw(keys, "is too large, or no number", "a finite number")
+    if any(isinstance(text, str) and _HALF_LETTER.search(text) for text in (value, *keys[-1:])):
+        yield Flaw(keys, "holds half a letter", "text in Unicode")
+
+
+def _misshapen(values: Json) -> Iterator[Flaw]:
+    """Yield what is missing or of another kind than results have there."""
+    try:
+        _Result.model_validate(values)
+    except ValidationError as error:
+        for detail in error.errors(include_url=False):
+            kind, _, _ = detail["type"].partition("_")
+            expected = _KINDS_OF_JSON.get(kind, detail["msg"].removeprefix("Input should be "))
+            if kind == "missing":
+                yield Flaw(detail["loc"], "is missing", "it as `designer report` wrote it")
+            else:
+                yield Flaw(detail["loc"], f"is {describe(detail['input'])}", expected)
 
 
 def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None) -> str:

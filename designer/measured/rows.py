@@ -27,6 +27,8 @@ _LARGEST_NUMBER = 1e30
 EPOCH_S = 1e8
 """Times from here on are counted from 1970: no log counts three years from its own start."""
 _LONGEST_LOG_S = 3.2e8
+_DATES_S = (-62_135_596_800.0, 253_402_300_799.0)
+"""From the year 1 to the end of 9999: there is no other date."""
 _SMALL_UNITS = {
     "ms": ("milliseconds", 1e3),
     "us": ("microseconds", 1e6),
@@ -211,6 +213,12 @@ def time_faults(
         problem = f"spans {np.ptp(values):.4g} s, which is more than ten years"
         expected = f"seconds, or another unit as {{to: {assign.TIME_NAME}, unit: ns}} in {_MAP}"
         yield table.fault(None, time.name, problem, expected)
+        return
+    beyond = np.flatnonzero((values < _DATES_S[0]) | (values > _DATES_S[1]))
+    if len(beyond) and (values[0] >= EPOCH_S or time.first_time):
+        problem = f"has {values[beyond[0]]:.4g} s since 1970, which is no date"
+        expected = f"the years 1 to 9999, or another unit as {{to: {assign.TIME_NAME}, unit: ns}}"
+        yield table.fault(int(rows[beyond[0]]), time.name, problem, f"{expected} in {_MAP}")
         return
     if not settled and len(rows) and np.ptp(values) == 0.0:
         expected = "a time that grows, or no such column"

@@ -218,6 +218,8 @@ def result_value(value: Any, path: str) -> str:
         return fmt.MISSING
     if isinstance(value, bool):
         return "yes" if value else "no"
+    if isinstance(value, dict):  # in a list of lists, which no result of ours has
+        value = [[key, part] for key, part in value.items()]
     if isinstance(value, list):
         return f"({', '.join(result_value(part, path) for part in value)})"
     if isinstance(value, str):

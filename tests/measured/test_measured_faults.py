@@ -209,6 +209,22 @@ def test_nanoseconds_from_the_start(log: Log) -> None:
     assert fault.problem == "spans 2.9e+11 s, which is more than ten years"
 
 
+@pytest.mark.parametrize(
+    ("form", "seconds"),
+    [
+        ("{:d}".format, "2e+13"),
+        (lambda row: f"0001-01-01T00:00:{row % 60:02}+14:00", "-6.214e+10"),
+    ],
+    ids=["seconds", "the year 0"],
+)
+def test_times_that_no_calendar_has(log: Log, form, seconds: str) -> None:
+    for row in range(1, 31):
+        log.set(row, "time_s", form(2 * 10**13 + row))
+    fault = log.faults()[0]
+    assert (fault.line, fault.field) == (2, "time_s")
+    assert fault.problem == f"row 1 has {seconds} s since 1970, which is no date"
+
+
 def test_a_date_that_is_no_reading(log: Log) -> None:
     log.set(5, "tension_2_N", "2026-05-03T10:00:00")
     fault = only(log.faults())
