@@ -20,17 +20,9 @@ class DesignerError(Exception):
 
 
 def visible(text: str) -> str:
-    """Return a text with a ``?`` for each letter that a terminal obeys, or that shows as nothing.
-
-    Line feeds and blanks of all kinds stay.
-    """
-    if text.isprintable():
-        return text
-    return "".join(
-        letter if letter.isprintable() or letter == "\n" or (letter > "\x9f" and letter.isspace())
-        else "?"
-        for letter in text
-    )  # fmt: skip
+    """Return a text with a ``?`` for each letter that commands a terminal or shows as nothing."""
+    blanks = "\n\u00a0\u2009\u202f"
+    return "".join(letter if letter.isprintable() or letter in blanks else "?" for letter in text)
 
 
 def one_line(text: object) -> str:

@@ -64,13 +64,12 @@ def export(
     if not path.name.endswith(kind.ending):
         expected = f"a name that ends in {kind.ending}"
         raise InputError.at("--output", f"{path} is no file of {to.value}", expected)
-    with output_folder(path.parent):  # goes again; what is in the way shows before the work
-        require_file(path)
     announce_compiling()
 
     from designer.export.robot import ExportedRobot
 
-    with ProgressBars() as bars:
+    with output_folder(path.parent) as building, ProgressBars() as bars:
+        require_file(path)  # what is in the way shows before the work
         exported = ExportedRobot.of(study, catalogue, bars, with_maps=kind.needs_maps)
         if kind.needs_ropes and not exported.has_ropes():
             show("No rope serves this study, so there is nothing to cut: see designer report.")
@@ -79,7 +78,6 @@ def export(
             show("No cable serves this study, so there is nothing to write: see designer report.")
             return False
         made = kind.write(exported, path.name.removesuffix(kind.ending))
-    with output_folder(path.parent) as building:
         for name, content in made.files.items():
             (building / name).write_bytes(content)
     for name in made.files:

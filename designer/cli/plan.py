@@ -39,7 +39,7 @@ def write_plan(
     if not is_alone:
         raise InputError.at("--plan", "has no use for --check or --data", "a plan alone")
     from designer.cli.terminal import ProgressBars, announce_compiling
-    from designer.io.output import file_names, output_folder, require_file, write_file
+    from designer.io.output import file_names, output_folder, require_file
 
     study, plugins = study_of(config, no_plugins)
     _check_options(study, n_poses, unknown or ())
@@ -50,11 +50,7 @@ def write_plan(
     tension_N = _noise("--tension-noise", tension_noise, FORCE)
     target = output or Path(f"{config.stem}-plan")
     is_table = target.suffix == ".csv"
-    if is_table:
-        require_file(target)
-    else:  # goes again; what is in the way shows before the work
-        with output_folder(target):
-            pass
+    folder = target.parent if is_table else target
     announce_compiling()
 
     from designer.analysis.lengths import Lengths
@@ -62,7 +58,9 @@ def write_plan(
     from designer.report.plan import write_plan_report
     from designer.selection.qualities import DesignCable
 
-    with ProgressBars("planning") as bars:
+    with output_folder(folder) as building, ProgressBars("planning") as bars:
+        if is_table:
+            require_file(target)
         cable, name = _cable(study, plugins, bars)
         measurements = _measurements(study, cable)
         if unknown:
@@ -73,17 +71,13 @@ def write_plan(
         table = _table(
             answer, Lengths(DesignCable(cable, name), answer.statics, ~answer.statics.is_solved)
         )
-        if is_table:
-            write_file(target, table)
-            _print_plan(answer, [str(target)])
-            return answer.is_positive
-        with output_folder(target) as building:
+        (building / (target.name if is_table else "plan.csv")).write_text(table, encoding="utf-8")
+        if not is_table:
             bars("report")
             write_plan_report(answer, name, building, template)
-            (building / "plan.csv").write_text(table, encoding="utf-8")
             (building / "plan.json").write_text(f"{answer.to_json()}\n", encoding="utf-8")
-            written = file_names(building)
-    _print_plan(answer, [f"{target}/{name}" for name in written])
+        written = file_names(building)
+    _print_plan(answer, [str(folder / name) for name in written])
     return answer.is_positive
 
 

@@ -30,10 +30,7 @@ from designer.progress import Advance
 
 
 class _Console(Console):
-    """Ends as other programs do where nobody reads on; rich would give a negative answer.
-
-    What a file calls its columns, ropes and load cases is shown, and commands no terminal.
-    """
+    """Ends as other programs do where nobody reads on; rich would give a negative answer."""
 
     def on_broken_pipe(self) -> None:
         """Be told of a closed pipe."""
@@ -42,7 +39,7 @@ class _Console(Console):
     def render(
         self, renderable: RenderableType, options: ConsoleOptions | None = None
     ) -> Iterator[Segment]:
-        """Yield the pieces of text to print, and rich's own commands to the terminal."""
+        """Yield what to print: names in a file, such as of columns, command no terminal."""
         for segment in super().render(renderable, options):
             yield segment if segment.control else segment._replace(text=visible(segment.text))
 

@@ -196,13 +196,7 @@ def _write_anew(path: Path, content: bytes) -> None:
 
 
 def require_file(path: Path) -> None:
-    """Refuse a path before the work that `write_file` would refuse after it.
-
-    Raises
-    ------
-    OutputError
-        If no file can be written there.
-    """
+    """Refuse a path before the work that `write_file` would refuse after it."""
     with explained(path):
         unfinished = _unfinished(_target(path))
         _write_anew(unfinished, b"")

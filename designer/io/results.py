@@ -17,17 +17,10 @@ from designer.analysis.reactions import reactions_csv
 from designer.analysis.selection_json import candidates_csv
 from designer.diagnosis.design import declared_by, declared_of_session, spreads_of
 from designer.diagnosis.result import Diagnosis, effects_table
-from designer.documents.document import (
-    DEEPEST_NESTING,
-    Flaw,
-    Key,
-    Keys,
-    decode,
-    document_of,
-    path_text,
-)
+from designer.documents import document
+from designer.documents.document import DEEPEST_NESTING, Flaw, Keys
 from designer.documents.edits import scalar, with_section, with_value
-from designer.documents.opened import open_input, read_input
+from designer.documents.opened import read_input
 from designer.documents.plain import RESULT_FORMAT, Json, why_unreadable
 from designer.documents.section import MOST_FAULTS
 from designer.errors import Fault, InputError
@@ -38,19 +31,10 @@ from designer.units import describe
 
 _RESULT = "a result.json that `designer report` wrote"
 _LARGEST_RESULT_BYTES = 50_000_000
-_LARGEST_NUMBER = 1e300
 _HALF_LETTER = re.compile("[\ud800-\udfff]")
-_KINDS_OF_JSON = {
-    "list": "a list", "model": "a mapping", "dict": "a mapping", "string": "a text",
-    "float": "a number",
-}  # fmt: skip
 
 
-class _Part(BaseModel, strict=True):
-    """Of a result: those of its values that a comparison does more with than to show them."""
-
-
-class _Check(_Part):
+class _Check(BaseModel, strict=True):
     id: str
     load_case: str
     state: Literal["holds", "fails", "open"]
@@ -58,23 +42,25 @@ class _Check(_Part):
     capacity: float | None = None
 
 
-class _Candidate(_Part):
+class _Candidate(BaseModel, strict=True):
     grade: str
     size_id: str
     standing: str
 
 
-class _Chosen(_Part):
+class _Chosen(BaseModel, strict=True):
     cost: float | None = None
 
 
-class _Selection(_Part):
+class _Selection(BaseModel, strict=True):
     candidates: list[_Candidate] = []
     chosen: _Chosen | None = None
     currency: str | None = None
 
 
-class _Result(_Part):
+class _Result(BaseModel, strict=True):
+    """What a comparison does more with than to show it."""
+
     provenance: dict[str, Any]
     checks: list[_Check] = []
     selection: _Selection | None = None
@@ -107,11 +93,9 @@ def read_result(path: Path) -> Json:
         With a fault for each value that no result has.
     """
     try:
-        with open_input(path) as file:
-            raw = file.read(_LARGEST_RESULT_BYTES + 1)
-        if len(raw) > _LARGEST_RESULT_BYTES:
+        if path.stat().st_size > _LARGEST_RESULT_BYTES:
             raise ValueError(f"it has more than {_LARGEST_RESULT_BYTES / 1e6:g} MB")
-        values = json.loads(raw)
+        values = json.loads(read_input(path))
     except (OSError, ValueError, RecursionError) as error:
         reason = (error.strerror or "").lower() if isinstance(error, OSError) else str(error)
         raise InputError.at(path, f"cannot be read: {reason}", _RESULT) from None
@@ -124,8 +108,12 @@ def read_result(path: Path) -> Json:
         raise InputError([Fault(str(path), None, "format", *why)])
     if "workspace" not in values:  # an optimise.json would compare as a result of nothing
         raise InputError.at(path, "is no result", _RESULT)
-    if flaws := [*_unusual(values), *_misshapen(values)][:MOST_FAULTS]:
-        raise InputError(Fault(str(path), None, path_text(keys), *words) for keys, *words in flaws)
+    faults = [
+        Fault(str(path), None, document.path_text(keys), problem, expected)
+        for keys, problem, expected in (*_unusual(values), *_misshapen(values))
+    ]
+    if faults:
+        raise InputError(faults[:MOST_FAULTS])
     return {"format": 1, **values}
 
 
@@ -136,7 +124,7 @@ def _unusual(value: object, keys: Keys = ()) -> Iterator[Flaw]:
             yield from _unusual(part, (*keys, key))
     elif isinstance(value, dict | list):
         yield Flaw(keys, "is nested too deeply", f"at most {DEEPEST_NESTING} levels")
-    elif isinstance(value, int | float) and not abs(value) <= _LARGEST_NUMBER:
+    elif isinstance(value, int | float) and not abs(value) <= 1e300:
         yield Flaw(keys, "is too large, or no number", "a finite number")
     if any(isinstance(text, str) and _HALF_LETTER.search(text) for text in (value, *keys[-1:])):
         yield Flaw(keys, "holds half a letter", "text in Unicode")
@@ -148,12 +136,10 @@ def _misshapen(values: Json) -> Iterator[Flaw]:
         _Result.model_validate(values)
     except ValidationError as error:
         for detail in error.errors(include_url=False):
-            kind, _, _ = detail["type"].partition("_")
-            expected = _KINDS_OF_JSON.get(kind, detail["msg"].removeprefix("Input should be "))
-            if kind == "missing":
-                yield Flaw(detail["loc"], "is missing", "it as `designer report` wrote it")
-            else:
-                yield Flaw(detail["loc"], f"is {describe(detail['input'])}", expected)
+            expected = detail["msg"].removeprefix("Input should be ").partition(" or instance")[0]
+            is_missing = detail["type"] == "missing"
+            problem = "is missing" if is_missing else f"is {describe(detail['input'])}"
+            yield Flaw(detail["loc"], problem, "" if is_missing else expected)
 
 
 def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None) -> str:
@@ -167,10 +153,10 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None
     source, measured = diagnosis.study.source.path, diagnosis.study.measurements
     assert measured is not None
     if text is None:
-        text = decode(read_input(source), str(source))
-    text = moved_to(folder, text, document_of(text.encode(), str(source)), source.parent)
+        text = document.decode(read_input(source), str(source))
+    text = moved_to(folder, text, document.document_of(text.encode(), str(source)), source.parent)
     # The data are not always those that the config names.
-    places: dict[tuple[Key, ...], str] = {}
+    places: dict[Keys, str] = {}
     if not measured.sessions:
         files = [scalar(path_from(folder, path)) for path in measured.files]
         places["file",] = files[0] if len(files) == 1 else f"[{', '.join(files)}]"
