@@ -1,20 +1,31 @@
 """The one place that opens files of the user's: regular ones alone.
 
 A pipe that nobody writes into, or a terminal, would be waited for without end, and a device such as
-/dev/zero never ends.
+/dev/zero never ends. What unpacks without end is read `apart`.
 """
 
 from __future__ import annotations
 
 import errno
+import json
 import os
 import stat
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from designer.errors import InputError
 
 LARGEST_FILE_BYTES = 1_000_000
+_MOST_MEMORY_BYTES = 2 << 30
+_START = (
+    "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
+    "from designer.documents.opened import answer; answer(*json.loads(sys.argv[2]))"
+)
 _KINDS = {
     stat.S_IFREG: "",
     stat.S_IFDIR: "a folder",
@@ -84,6 +95,32 @@ def read_bytes(path: Path, name: str, kind: str = "a YAML file") -> bytes:
         problem = f"the file cannot be read: {reason(error)}"
     expected = f"{kind} of at most {LARGEST_FILE_BYTES / 1e6:g} MB"
     raise InputError.at(name, problem, expected)
+
+
+def apart(read: Callable[..., Any], content: bytes, longest_s: int, *options: object) -> Any:
+    """Return what a function makes of a file; None where it fails, or takes too much.
+
+    The function is one of a module, is given the file and ``options``, and returns what JSON can
+    hold. Another process calls it, with limited memory and ``longest_s`` of its processor.
+    """
+    task = json.dumps((read.__module__, read.__name__, longest_s, *options))
+    frugal = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # each thread takes of the memory
+    with suppress(subprocess.SubprocessError):
+        done = subprocess.run(
+            [sys.executable, "-P", "-c", _START, json.dumps(sys.path), task],
+            input=content, capture_output=True, env=frugal, timeout=4 * longest_s, check=True,
+        )  # fmt: skip
+        return json.loads(done.stdout)
+    return None
+
+
+def answer(module: str, function: str, longest_s: int, *options: object) -> None:
+    """Answer `apart`, in its process."""
+    from designer.plugins.child import limit
+
+    read = getattr(import_module(module), function)
+    limit(_MOST_MEMORY_BYTES, longest_s)
+    print(json.dumps(read(sys.stdin.buffer.read(), *options)))
 
 
 def other_kind(mode: int) -> str:

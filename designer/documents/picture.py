@@ -6,64 +6,24 @@ memory and time, which it may end.
 
 from __future__ import annotations
 
+import base64
+import io
 import re
-import subprocess
-import sys
 from functools import lru_cache
 
+from designer.documents.opened import apart
 from designer.documents.xml import Element, xml_of
 from designer.errors import InputError
 
 LARGEST_PICTURE_BYTES = 1_000_000
 _MOST_PIXELS = 20_000_000
-_LONGEST_S = 10.0
+_LONGEST_S = 10
 _SVG = "image/svg+xml"
 _EXPECTED = "a PNG, JPEG or SVG file"
 _INSIDE = re.compile(r"#|data:image/(?:png|jpeg);base64,", re.IGNORECASE)
 _ADDRESS = re.compile(r"url\(\s*[\"']?\s*([^)]*)|@import\s*(.*)", re.IGNORECASE)
 
-_TOO_MANY_PIXELS, _NOT_READABLE, _LOADS = 3, 4, 5
-_WHY = {
-    _TOO_MANY_PIXELS: (f"has more than {_MOST_PIXELS / 1e6:g} million pixels", "fewer"),
-    _NOT_READABLE: ("cannot be decoded", _EXPECTED),
-    _LOADS: ("loads something from elsewhere", "a picture that holds all that it shows"),
-}
-_DRAW = f"""
-import base64, io, sys
-try:
-    import resource
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    resource.setrlimit(resource.RLIMIT_CPU, ({_LONGEST_S:.0f}, {_LONGEST_S:.0f}))
-    resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
-    resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))
-except (ImportError, ValueError, OSError):
-    pass  # Windows has none of these, macOS not all
-kind, raw, asked = sys.argv[1], sys.stdin.buffer.read(), []
-if kind != "{_SVG}":
-    from PIL import Image
-    Image.MAX_IMAGE_PIXELS = None  # ours is told by its name
-    try:
-        picture = Image.open(io.BytesIO(raw), formats=("PNG", "JPEG"))
-        if picture.width * picture.height > {_MOST_PIXELS}:
-            sys.exit({_TOO_MANY_PIXELS})
-        picture.load()
-    except Exception:
-        sys.exit({_NOT_READABLE})
-try:
-    import plutoprint
-except ImportError:
-    sys.exit(0)  # no wheel for this kind of machine: nothing of ours will draw it
-class Nothing(plutoprint.ResourceFetcher):
-    def fetch_url(self, url):
-        asked.append(url)
-        return plutoprint.ResourceData(b"", "text/plain")
-book = plutoprint.Book(plutoprint.PAGE_SIZE_A4)
-book.custom_resource_fetcher = Nothing()
-address = f"data:{{kind}};base64,{{base64.b64encode(raw).decode()}}"
-book.load_html(f'<img style="max-width: 11rem" src="{{address}}">', base_url="report:/")
-book.write_to_pdf_stream(io.BytesIO())
-sys.exit({_LOADS} if asked else 0)
-"""
+_LOADS = ("loads something from elsewhere", "a picture that holds all that it shows")
 
 
 def picture_type(start: bytes) -> str | None:
@@ -99,7 +59,7 @@ def _why_no_svg(raw: bytes) -> tuple[str, str] | None:
         return f"is no plain SVG{place}: {fault.problem}", "one without that"
     outside = next((place for element in root.everything() for place in _outside(element)), None)
     outside = outside or ("a style sheet" if b"<?xml-stylesheet" in raw else None)
-    return None if outside is None else (f"refers to {outside[:80]!r}", _WHY[_LOADS][1])
+    return None if outside is None else (f"refers to {outside[:80]!r}", _LOADS[1])
 
 
 def _outside(element: Element) -> list[str]:
@@ -112,13 +72,39 @@ def _outside(element: Element) -> list[str]:
 
 
 def _why_not_drawn(raw: bytes, kind: str) -> tuple[str, str] | None:
-    program = [sys.executable, "-P", "-c", _DRAW, kind]
+    why = apart(_drawn, raw, _LONGEST_S, kind)
+    if why is None:
+        why = f"cannot be drawn, or not within {_LONGEST_S} s", "a simpler picture"
+    return tuple(why) or None
+
+
+def _drawn(raw: bytes, kind: str) -> tuple[str, str] | tuple[()]:
+    """Draw a picture, and return what keeps a page from showing it."""
+    if kind != _SVG:
+        from PIL import Image
+
+        Image.MAX_IMAGE_PIXELS = None  # ours is told by its name
+        try:
+            picture = Image.open(io.BytesIO(raw), formats=("PNG", "JPEG"))
+            if picture.width * picture.height > _MOST_PIXELS:
+                return f"has more than {_MOST_PIXELS / 1e6:g} million pixels", "fewer"
+            picture.load()
+        except Exception:
+            return "cannot be decoded", _EXPECTED
     try:
-        drawn = subprocess.run(
-            program, input=raw, capture_output=True, timeout=_LONGEST_S, check=False
-        )
-    except subprocess.TimeoutExpired:
-        return f"is not drawn within {_LONGEST_S:g} s", "a simpler picture"
-    if drawn.returncode == 0:
-        return None
-    return _WHY.get(drawn.returncode, ("cannot be drawn", "a simpler picture"))
+        import plutoprint
+    except ImportError:
+        return ()  # no wheel for this kind of machine: nothing of ours will draw it
+    asked: list[str] = []
+
+    class Nothing(plutoprint.ResourceFetcher):
+        def fetch_url(self, url: str) -> plutoprint.ResourceData:
+            asked.append(url)
+            return plutoprint.ResourceData(b"", "text/plain")
+
+    book = plutoprint.Book(plutoprint.PAGE_SIZE_A4)
+    book.custom_resource_fetcher = Nothing()
+    address = f"data:{kind};base64,{base64.b64encode(raw).decode()}"
+    book.load_html(f'<img style="max-width: 11rem" src="{address}">', base_url="report:/")
+    book.write_to_pdf_stream(io.BytesIO())
+    return _LOADS if asked else ()

@@ -7,16 +7,19 @@ how words are aligned, which was seen to lose the ends of texts, and so would lo
 from __future__ import annotations
 
 import io
-import logging
 import re
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any, BinaryIO
 
-from designer.errors import InputError
+from designer.documents.opened import apart
+from designer.errors import InputError, one_line
 from designer.measured.formats import library_of
 
 _LARGEST_BYTES = 50_000_000
 _MOST_PAGES = 200
+_LONGEST_S = 60
+_TOO_MUCH: Any = [], f"reading it takes over {_LONGEST_S} s or 2 GB", "--page N, or a CSV file"
 _EXPECTED = "a table of text with lines between its cells; others are copied into a CSV file"
 _WITH_COMMA = re.compile(r"\d+,(?:\d{1,2}|\d{4,})|0,\d+")
 _WITH_POINT = re.compile(r"\d+\.\d+")
@@ -46,18 +49,14 @@ def pdf_rows(
         If the library that reads such files is missing, the file is damaged or too large, or it
         holds no such table or several.
     """
-    library = library_of("pdfplumber", "pdf-tables", "a PDF", name)
+    library_of("pdfplumber", "pdf-tables", "a PDF", name)
     content = file.read(_LARGEST_BYTES + 1)
     if len(content) > _LARGEST_BYTES:
         expected = f"at most {_LARGEST_BYTES / 1e6:g} MB"
         raise InputError.at(name, "the file is too large", expected)
-    try:
-        tables = _tables(library, content, name, page)
-    except InputError:
-        raise
-    except Exception as error:  # whatever a damaged file makes of its reader
-        problem = " ".join(f"this is no PDF that can be read: {error}".split())[:200]
-        raise InputError.at(name, problem.rstrip(": "), _EXPECTED) from None
+    tables, problem, expected = apart(_tables, content, _LONGEST_S, page) or _TOO_MUCH
+    if problem:
+        raise InputError.at(name, problem, expected)
     known = [(number, rows) for number, rows in tables if has_head(rows)]
     if page is not None and not known and len(tables) == 1:
         known = tables
@@ -75,14 +74,19 @@ def pdf_rows(
     return _with_points(known[0][1])
 
 
-def _tables(library: Any, content: bytes, name: str, page: int | None) -> list[tuple[int, PdfRows]]:
-    """Return the tables of all pages, or of one, with the number of the page."""
-    logging.getLogger("pdfminer").setLevel(logging.ERROR)  # it warns of fonts and colours
-    with library.open(io.BytesIO(content)) as pdf:
-        if page is None and len(pdf.pages) > _MOST_PAGES:
-            raise InputError.at(name, f"it has {len(pdf.pages)} pages", "--page N")
-        pages = pdf.pages if page is None else pdf.pages[page - 1 : page]
-        return [(p.page_number, rows) for p in pages for rows in _tables_of(p)]
+def _tables(content: bytes, page: int | None) -> tuple[list[tuple[int, PdfRows]], str, str]:
+    """Return the tables of all pages, or of one, by the page's number; or why not, and a remedy."""
+    try:
+        with import_module("pdfplumber").open(io.BytesIO(content)) as pdf:
+            if page is None and len(pdf.pages) > _MOST_PAGES:
+                return [], f"it has {len(pdf.pages)} pages", "--page N"
+            pages = pdf.pages if page is None else pdf.pages[page - 1 : page]
+            return [(p.page_number, rows) for p in pages for rows in _tables_of(p)], "", ""
+    except Exception as error:  # whatever a damaged file makes of its reader
+        if isinstance(error, MemoryError):
+            raise
+        problem = f"this is no PDF that can be read: {one_line(error)[:150]}"
+        return [], problem.rstrip(": "), _EXPECTED
 
 
 def _tables_of(page: Any) -> list[PdfRows]:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import date
 from functools import partial
+from itertools import islice
 from pathlib import Path
 
 from designer.documents.bounds import BOUNDS, Bound
@@ -47,7 +48,7 @@ def read_prices(path: Path, error_of: ErrorOf) -> tuple[PriceList, str]:
         raise error_of(problem, expected) from None
     with file:
         rows, digest = cells_of(file, str(path))
-        (head_line, head), *below = [*rows][: _MOST_OFFERS + 2] or [(1, [])]
+        (head_line, head), *below = [*islice(rows, _MOST_OFFERS + 2)] or [(1, [])]
     names = [cell.strip().casefold() for cell in head]
     faults = [Fault(str(path), head_line, *flaw) for flaw in _head_flaws(names)]
     if not below:

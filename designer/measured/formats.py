@@ -10,7 +10,9 @@ import hashlib
 import importlib
 import io
 import math
+import os
 import warnings
+import zipfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields, is_dataclass, replace
 from datetime import datetime
@@ -32,6 +34,11 @@ from designer.measured.table import (
     text_rows,
 )
 
+_MOST_ROWS, _MOST_CELLS = 10_000_000, 50_000_000
+_LAST_ROW = 1 << 20
+"""Of a sheet of Excel."""
+_DENSEST = 50
+"""Of what is large; a workbook with the same value everywhere unpacks to 16 times its size."""
 _LONGEST_ARRAY = 64
 """Longer ones in a message are scans or images, no readings."""
 
@@ -102,10 +109,24 @@ def _checked(kind: _Format, rows: Rows, name: str) -> Rows:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of styles and the like, which are not read
         try:
-            yield from rows
+            n_cells = 0
+            for n_rows, row in enumerate(rows):
+                n_cells += len(row[1])
+                _require_size(n_rows, n_cells)
+                yield row
         except Exception as error:  # whatever a damaged file makes of its reader
             what = kind.called.partition(" ")[2]
             refuse(name, None, f"this is no {what} that can be read: {_in_a_line(error)}")
+
+
+def _require_size(
+    n_rows: int, n_cells: int, n_bytes: int = 0, n_packed: int = LARGEST_FILE_BYTES
+) -> None:
+    """Refuse what fills the memory, by what a file says of itself or by what came of it."""
+    most = min(LARGEST_FILE_BYTES, max(1_000_000, _DENSEST * n_packed))
+    if n_rows > _MOST_ROWS or n_cells > _MOST_CELLS or max(n_bytes, n_cells) > most:
+        limits = f"{_MOST_ROWS:,} rows, {_MOST_CELLS:,} cells or {most:,} bytes"
+        raise ValueError(f"it unpacks to more than {limits}")
 
 
 def _in_a_line(error: Exception) -> str:
@@ -113,20 +134,36 @@ def _in_a_line(error: Exception) -> str:
 
 
 def _workbook_rows(openpyxl: Any, file: BinaryIO) -> Rows:
-    """Yield the rows of the first sheet, by their numbers there."""
+    """Yield the rows of the first sheet, by their numbers there.
+
+    The library's own loop leaves out rows that the sheet does not say that it has, and those whose
+    number is not above that of the row before.
+    """
+    n_bytes = sum(part.file_size for part in zipfile.ZipFile(file).infolist())
+    _require_size(0, 0, n_bytes, file.seek(0, os.SEEK_END))
     book = openpyxl.load_workbook(file, read_only=True, data_only=True)
-    width = 0
-    for number, row in enumerate(book.worksheets[0].iter_rows(values_only=True), start=1):
-        cells = [_text(cell) for cell in row]
-        while cells and not cells[-1]:
-            cells.pop()
-        if cells:
-            width = width or len(cells)  # that of the head
-            yield number, cells + [""] * (width - len(cells))
+    sheet = book.worksheets[0]
+    reader = importlib.import_module("openpyxl.worksheet._reader").WorkSheetParser(
+        sheet._get_source(), sheet._shared_strings, data_only=True, epoch=book.epoch,
+        date_formats=book._date_formats, timedelta_formats=book._timedelta_formats,
+    )  # fmt: skip
+    width = last = 0
+    for number, row in reader.parse():
+        if not last < number <= _LAST_ROW or len({cell["column"] for cell in row}) < len(row):
+            raise ValueError(f"row {number} follows row {last}, or has a cell twice")
+        last = number
+        texts = {cell["column"]: text for cell in row if (text := _text(cell["value"]))}
+        if texts:
+            width = width or max(texts)  # that of the head
+            yield number, [texts.get(k, "") for k in range(1, max(width, *texts) + 1)]
 
 
 def _parquet_rows(parquet: Any, file: BinaryIO) -> Rows:
     table = parquet.ParquetFile(file)
+    says = table.metadata
+    n_bytes = sum(says.row_group(k).total_byte_size for k in range(says.num_row_groups))
+    n_cells = says.num_rows * says.num_columns
+    _require_size(says.num_rows, n_cells, n_bytes, file.seek(0, os.SEEK_END))
     yield 0, list(table.schema_arrow.names)
     for batch in table.iter_batches(4096):
         columns = [_parquet_cells(column) for column in batch.columns]

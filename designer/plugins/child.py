@@ -24,7 +24,7 @@ def main(name: str, value: str, label: str, longest_wait_s: float) -> None:
     """Load the plugin of an entry point, and answer with what its hooks give."""
     out = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what the plugin itself prints below Python goes to standard error
-    _limit()
+    limit(_MOST_MEMORY_BYTES, _MOST_PROCESSOR_S)
     guard.LONGEST_WAIT_S = longest_wait_s
     plain = {hook: import_module(module) for hook, module in PLAIN.items()}
 
@@ -46,10 +46,11 @@ def main(name: str, value: str, label: str, longest_wait_s: float) -> None:
     os._exit(0)  # a thread of the plugin may still be at work
 
 
-def _limit() -> None:
+def limit(memory_bytes: int, processor_s: int) -> None:
+    """Limit what this process may take, where the system can."""
     with suppress(ImportError, ValueError, OSError):  # Windows has none, macOS not all
         import resource
 
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_CPU, (_MOST_PROCESSOR_S, _MOST_PROCESSOR_S))
-        resource.setrlimit(resource.RLIMIT_AS, (_MOST_MEMORY_BYTES, _MOST_MEMORY_BYTES))
+        resource.setrlimit(resource.RLIMIT_CPU, (processor_s, processor_s))
+        resource.setrlimit(resource.RLIMIT_AS, (memory_bytes, memory_bytes))
