@@ -6,6 +6,7 @@ import re
 import shutil
 import weakref
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -56,11 +57,27 @@ from designer.workspace.sweep import map_workspace
 
 
 class TemporaryFolder:
-    """A temporary folder that goes when nothing refers to this any more."""
+    """A temporary folder that goes when nothing refers to this any more, or after a killed run."""
 
     def __init__(self) -> None:
+        from filelock import FileLock, Timeout
+
         self.folder = Path(mkdtemp(prefix="designer-"))
-        weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
+        lock = FileLock(self.folder / "lock", thread_local=False)
+        weakref.finalize(self, _remove_locked, lock)
+        with suppress(NotImplementedError):  # a file system without locks
+            lock.acquire()
+        for path in self.folder.parent.glob("designer-*/lock"):  # nobody holds a killed run's
+            with suppress(OSError, Timeout, NotImplementedError):
+                if path.parent.lstat().st_uid == self.folder.stat().st_uid:
+                    left_over = FileLock(path, timeout=0)
+                    left_over.acquire()
+                    _remove_locked(left_over)
+
+
+def _remove_locked(lock: Any) -> None:
+    lock.release()  # Windows removes no file that is open
+    shutil.rmtree(Path(lock.lock_file).parent, ignore_errors=True)
 
 
 @dataclass(frozen=True, eq=False)

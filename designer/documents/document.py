@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 from designer.documents.opened import read_bytes
-from designer.errors import Fault, InputError
+from designer.errors import Fault, InputError, visible
 from designer.units import split_quantity
 
 if TYPE_CHECKING:
@@ -164,8 +164,7 @@ def path_keys(text: str) -> tuple[Key, ...]:
 
 def printable(name: str) -> str:
     """Return a field name cut short, with control characters replaced."""
-    printable_name = "".join(letter if letter.isprintable() else "?" for letter in name)
-    return printable_name if len(printable_name) <= 60 else printable_name[:60] + "…"
+    return visible(name if len(name) <= 60 else name[:60] + "…").replace("\n", "?")
 
 
 MOST_VALUES = 200_000

@@ -21,7 +21,6 @@ from typing import Any, BinaryIO
 from designer.errors import InputError
 
 LARGEST_FILE_BYTES = 1_000_000
-_MOST_MEMORY_BYTES = 2 << 30
 _START = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
     "from designer.documents.opened import answer; answer(*json.loads(sys.argv[2]))"
@@ -101,7 +100,7 @@ def apart(read: Callable[..., Any], content: bytes, longest_s: int, *options: ob
     """Return what a function makes of a file; None where it fails, or takes too much.
 
     The function is one of a module, is given the file and ``options``, and returns what JSON can
-    hold. Another process calls it, with limited memory and ``longest_s`` of its processor.
+    hold. Another process calls it, with 2 GB of memory and ``longest_s`` of its processor.
     """
     task = json.dumps((read.__module__, read.__name__, longest_s, *options))
     frugal = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # each thread takes of the memory
@@ -119,7 +118,7 @@ def answer(module: str, function: str, longest_s: int, *options: object) -> None
     from designer.plugins.child import limit
 
     read = getattr(import_module(module), function)
-    limit(_MOST_MEMORY_BYTES, longest_s)
+    limit(2 << 30, longest_s)
     print(json.dumps(read(sys.stdin.buffer.read(), *options)))
 
 

@@ -47,7 +47,12 @@ def why_not_shown(raw: bytes) -> tuple[str, str] | None:
     kind = picture_type(raw[:512])
     if kind is None:
         return "is no such picture", _EXPECTED
-    return (_why_no_svg(raw) if kind == _SVG else None) or _why_not_drawn(raw, kind)
+    if kind == _SVG and (why_no_svg := _why_no_svg(raw)):
+        return why_no_svg
+    why = apart(_drawn, raw, _LONGEST_S, kind)
+    if why is None:
+        return f"cannot be drawn, or not within {_LONGEST_S} s", "a simpler picture"
+    return tuple(why) or None
 
 
 def _why_no_svg(raw: bytes) -> tuple[str, str] | None:
@@ -69,13 +74,6 @@ def _outside(element: Element) -> list[str]:
     texts = (*attributes.values(), element.text)
     named += ["".join(address) for text in texts for address in _ADDRESS.findall(text)]
     return [address for address in named if not _INSIDE.match(address.strip())]
-
-
-def _why_not_drawn(raw: bytes, kind: str) -> tuple[str, str] | None:
-    why = apart(_drawn, raw, _LONGEST_S, kind)
-    if why is None:
-        why = f"cannot be drawn, or not within {_LONGEST_S} s", "a simpler picture"
-    return tuple(why) or None
 
 
 def _drawn(raw: bytes, kind: str) -> tuple[str, str] | tuple[()]:

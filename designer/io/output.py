@@ -150,18 +150,11 @@ def _remove_empty(folder: Path) -> None:
 
 
 def _not_writable(path: Path, error: OSError) -> str:
-    file = next((parent for parent in path.parents if _is_file(parent)), None)
+    file = next(filter(os.path.isfile, path.parents), None)  # pathlib's fails at a long name
     reason = f"{file} is a file" if file else error.strerror
     if isinstance(error, FileExistsError) and path.is_symlink():
         reason = "it is a link that leads nowhere"
     return f"{path}: cannot be written ({reason})"
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except OSError:  # such as a name longer than the file system takes
-        return False
 
 
 def file_names(folder: Path) -> list[str]:
@@ -174,7 +167,7 @@ def write_whole(path: Path, content: bytes) -> None:
     target = _target(path)
     unfinished = _unfinished(target)
     try:
-        _write_anew(unfinished, content)
+        unfinished.write_bytes(content)
         unfinished.replace(target)
     finally:
         unfinished.unlink(missing_ok=True)
@@ -188,18 +181,11 @@ def _target(path: Path) -> Path:
     return Path(os.path.realpath(path))
 
 
-def _write_anew(path: Path, content: bytes) -> None:
-    """Write a file that nobody else has made, who may have made it a link."""
-    path.unlink(missing_ok=True)
-    with path.open("xb") as file:
-        file.write(content)
-
-
 def require_file(path: Path) -> None:
     """Refuse a path before the work that `write_file` would refuse after it."""
     with explained(path):
         unfinished = _unfinished(_target(path))
-        _write_anew(unfinished, b"")
+        unfinished.touch()
         unfinished.unlink()
 
 
@@ -241,25 +227,18 @@ def write_new_file(path: Path, text: str) -> None:
     try:
         with explained(path), undone_at_end() as undo:
             undo.add(partial(unfinished.unlink, missing_ok=True))
-            _write_anew(unfinished, text.encode())
-            _take_new_name(unfinished, path)
+            unfinished.write_bytes(text.encode())
+            try:
+                path.hardlink_to(unfinished)
+            except (OSError, NotImplementedError):  # a file system without links
+                if os.path.lexists(path):
+                    raise FileExistsError(errno.EEXIST, "exists already") from None
+                unfinished.replace(path)
     except OutputError as error:
         if isinstance(error.__cause__, FileExistsError):
             line = f"{path}: exists already (expected a new file)"
             raise OutputError(line) from error.__cause__
         raise
-
-
-def _take_new_name(unfinished: Path, path: Path) -> None:
-    """Give a file that is whole its name, unless something has that name."""
-    try:
-        path.hardlink_to(unfinished)
-    except FileExistsError:
-        raise
-    except (OSError, NotImplementedError):  # a file system without links
-        if os.path.lexists(path):
-            raise FileExistsError(errno.EEXIST, "exists already") from None
-        unfinished.replace(path)
 
 
 def _unfinished(path: Path) -> Path:

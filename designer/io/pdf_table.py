@@ -83,10 +83,8 @@ def _tables(content: bytes, page: int | None) -> tuple[list[tuple[int, PdfRows]]
             pages = pdf.pages if page is None else pdf.pages[page - 1 : page]
             return [(p.page_number, rows) for p in pages for rows in _tables_of(p)], "", ""
     except Exception as error:  # whatever a damaged file makes of its reader
-        if isinstance(error, MemoryError):
-            raise
-        problem = f"this is no PDF that can be read: {one_line(error)[:150]}"
-        return [], problem.rstrip(": "), _EXPECTED
+        problem = f"this is no PDF that can be read: {one_line(error)[:150]}".rstrip(": ")
+        return ([], problem, _EXPECTED) if not isinstance(error, MemoryError) else _TOO_MUCH
 
 
 def _tables_of(page: Any) -> list[PdfRows]:

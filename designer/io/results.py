@@ -7,10 +7,9 @@ import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
-from pydantic import BaseModel, ValidationError
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.reactions import reactions_csv
@@ -32,38 +31,22 @@ from designer.units import describe
 _RESULT = "a result.json that `designer report` wrote"
 _LARGEST_RESULT_BYTES = 50_000_000
 _HALF_LETTER = re.compile("[\ud800-\udfff]")
-
-
-class _Check(BaseModel, strict=True):
-    id: str
-    load_case: str
-    state: Literal["holds", "fails", "open"]
-    demand: float | None = None
-    capacity: float | None = None
-
-
-class _Candidate(BaseModel, strict=True):
-    grade: str
-    size_id: str
-    standing: str
-
-
-class _Chosen(BaseModel, strict=True):
-    cost: float | None = None
-
-
-class _Selection(BaseModel, strict=True):
-    candidates: list[_Candidate] = []
-    chosen: _Chosen | None = None
-    currency: str | None = None
-
-
-class _Result(BaseModel, strict=True):
-    """What a comparison does more with than to show it."""
-
-    provenance: dict[str, Any]
-    checks: list[_Check] = []
-    selection: _Selection | None = None
+_KINDS: dict[str, Any] = {
+    "a mapping": dict, "a list": list, "a text": str, "a number": int | float | None,
+    "a mapping, or null": dict | None, "a text, or null": str | None,
+}  # fmt: skip
+_SHAPE = {
+    "provenance": "a mapping", "checks": "a list", "checks.*": "a mapping",
+    "checks.*.demand": "a number", "checks.*.capacity": "a number",
+    "selection": "a mapping, or null", "selection.currency": "a text, or null",
+    "selection.chosen": "a mapping, or null", "selection.chosen.cost": "a number",
+    "selection.candidates": "a list", "selection.candidates.*": "a mapping",
+}  # fmt: skip
+"""What a comparison does more with than to show it."""
+_TEXTS = {
+    "checks.*": ("id", "load_case", "state"),
+    "selection.candidates.*": ("grade", "size_id", "standing"),
+}  # in each of a list, and never left out
 
 
 def write_results(analysis: Analysis, folder: Path) -> None:
@@ -110,36 +93,32 @@ def read_result(path: Path) -> Json:
         raise InputError.at(path, "is no result", _RESULT)
     faults = [
         Fault(str(path), None, document.path_text(keys), problem, expected)
-        for keys, problem, expected in (*_unusual(values), *_misshapen(values))
+        for keys, problem, expected in _flaws(values)
     ]
     if faults:
         raise InputError(faults[:MOST_FAULTS])
     return {"format": 1, **values}
 
 
-def _unusual(value: object, keys: Keys = ()) -> Iterator[Flaw]:
-    """Yield what JSON can hold, and no result: depths, numbers that are none, halves of letters."""
-    if isinstance(value, dict | list) and len(keys) < DEEPEST_NESTING:
-        for key, part in value.items() if isinstance(value, dict) else enumerate(value):
-            yield from _unusual(part, (*keys, key))
-    elif isinstance(value, dict | list):
+def _flaws(value: object, keys: Keys = (), expected: str = "") -> Iterator[Flaw]:
+    """Yield what no result holds: values of other kinds, depths, halves of letters, no numbers."""
+    path = ".".join("*" if isinstance(key, int) else key for key in keys)
+    expected = expected or _SHAPE.get(path, "")
+    if expected and not isinstance(value, _KINDS[expected]):
+        yield Flaw(keys, f"is {describe(value)}", expected)
+    elif isinstance(value, dict | list) and len(keys) >= DEEPEST_NESTING:
         yield Flaw(keys, "is nested too deeply", f"at most {DEEPEST_NESTING} levels")
+    elif isinstance(value, dict):
+        needed = dict.fromkeys(_TEXTS.get(path, ()), "a text")
+        for key in {**needed, **value}:
+            yield from _flaws(value.get(key), (*keys, key), needed.get(key, ""))
+    elif isinstance(value, list):
+        for place, part in enumerate(value):
+            yield from _flaws(part, (*keys, place))
     elif isinstance(value, int | float) and not abs(value) <= 1e300:
         yield Flaw(keys, "is too large, or no number", "a finite number")
     if any(isinstance(text, str) and _HALF_LETTER.search(text) for text in (value, *keys[-1:])):
         yield Flaw(keys, "holds half a letter", "text in Unicode")
-
-
-def _misshapen(values: Json) -> Iterator[Flaw]:
-    """Yield what is missing or of another kind than results have there."""
-    try:
-        _Result.model_validate(values)
-    except ValidationError as error:
-        for detail in error.errors(include_url=False):
-            expected = detail["msg"].removeprefix("Input should be ").partition(" or instance")[0]
-            is_missing = detail["type"] == "missing"
-            problem = "is missing" if is_missing else f"is {describe(detail['input'])}"
-            yield Flaw(detail["loc"], problem, "" if is_missing else expected)
 
 
 def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None) -> str:

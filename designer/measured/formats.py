@@ -10,7 +10,6 @@ import hashlib
 import importlib
 import io
 import math
-import os
 import warnings
 import zipfile
 from collections.abc import Callable, Iterator, Sequence
@@ -23,6 +22,7 @@ from typing import Any, BinaryIO, NamedTuple
 import numpy as np
 
 from designer.documents.opened import open_input
+from designer.errors import one_line
 from designer.measured.table import (
     LARGEST_FILE_BYTES,
     MOST_ALIKE,
@@ -35,10 +35,8 @@ from designer.measured.table import (
 )
 
 _MOST_ROWS, _MOST_CELLS = 10_000_000, 50_000_000
-_LAST_ROW = 1 << 20
-"""Of a sheet of Excel."""
-_DENSEST = 50
-"""Of what is large; a workbook with the same value everywhere unpacks to 16 times its size."""
+_LAST_ROW = 1 << 20  # of a sheet of Excel
+_DENSEST = 50  # a workbook with the same value everywhere unpacks to 16 times its size
 _LONGEST_ARRAY = 64
 """Longer ones in a message are scans or images, no readings."""
 
@@ -116,7 +114,7 @@ def _checked(kind: _Format, rows: Rows, name: str) -> Rows:
                 yield row
         except Exception as error:  # whatever a damaged file makes of its reader
             what = kind.called.partition(" ")[2]
-            refuse(name, None, f"this is no {what} that can be read: {_in_a_line(error)}")
+            refuse(name, None, f"this is no {what} that can be read: {one_line(error)}")
 
 
 def _require_size(
@@ -129,10 +127,6 @@ def _require_size(
         raise ValueError(f"it unpacks to more than {limits}")
 
 
-def _in_a_line(error: Exception) -> str:
-    return " ".join(str(error).split())[:200]
-
-
 def _workbook_rows(openpyxl: Any, file: BinaryIO) -> Rows:
     """Yield the rows of the first sheet, by their numbers there.
 
@@ -140,7 +134,7 @@ def _workbook_rows(openpyxl: Any, file: BinaryIO) -> Rows:
     number is not above that of the row before.
     """
     n_bytes = sum(part.file_size for part in zipfile.ZipFile(file).infolist())
-    _require_size(0, 0, n_bytes, file.seek(0, os.SEEK_END))
+    _require_size(0, 0, n_bytes, file.seek(0, io.SEEK_END))
     book = openpyxl.load_workbook(file, read_only=True, data_only=True)
     sheet = book.worksheets[0]
     reader = importlib.import_module("openpyxl.worksheet._reader").WorkSheetParser(
@@ -160,10 +154,10 @@ def _workbook_rows(openpyxl: Any, file: BinaryIO) -> Rows:
 
 def _parquet_rows(parquet: Any, file: BinaryIO) -> Rows:
     table = parquet.ParquetFile(file)
-    says = table.metadata
-    n_bytes = sum(says.row_group(k).total_byte_size for k in range(says.num_row_groups))
-    n_cells = says.num_rows * says.num_columns
-    _require_size(says.num_rows, n_cells, n_bytes, file.seek(0, os.SEEK_END))
+    head = table.metadata
+    n_bytes = sum(head.row_group(k).total_byte_size for k in range(head.num_row_groups))
+    n_cells = head.num_rows * head.num_columns
+    _require_size(head.num_rows, n_cells, n_bytes, file.seek(0, io.SEEK_END))
     yield 0, list(table.schema_arrow.names)
     for batch in table.iter_batches(4096):
         columns = [_parquet_cells(column) for column in batch.columns]
@@ -223,7 +217,7 @@ def read_bag(path: Path, wanted: Sequence[str]) -> list[LogTable]:
                 cells.update(_leaves(message, connection.topic))
                 messages[connection.topic].append(cells)
     except Exception as error:  # whatever a damaged bag makes of its reader
-        problem = f"this is no bag that can be read: {_in_a_line(error)}"
+        problem = f"this is no bag that can be read: {one_line(error)}"
         refuse(str(path), None, problem, "a bag of ROS")
     if not named:
         expected = (

@@ -27,8 +27,7 @@ _LARGEST_NUMBER = 1e30
 EPOCH_S = 1e8
 """Times from here on are counted from 1970: no log counts three years from its own start."""
 _LONGEST_LOG_S = 3.2e8
-_DATES_S = (-62_135_596_800.0, 253_402_300_799.0)
-"""From the year 1 to the end of 9999: there is no other date."""
+_DATES_S = (-62_135_596_800.0, 253_402_300_799.0)  # from the year 1 to the end of 9999
 _SMALL_UNITS = {
     "ms": ("milliseconds", 1e3),
     "us": ("microseconds", 1e6),

@@ -122,7 +122,7 @@ def test_a_picture_that_holds_all_it_shows_is_taken(tmp_path, logo) -> None:
 @pytest.mark.parametrize("logo", [png(41), svg('<g id="b"/>')])
 def test_a_picture_is_taken_where_no_pdf_can_be_made(tmp_path, monkeypatch, logo) -> None:
     (tmp_path / "plutoprint.py").write_text("raise ImportError")
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.syspath_prepend(tmp_path)
     assert control_of(designer.read_study(study(tmp_path, logo))).logo
 
 
