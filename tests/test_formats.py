@@ -94,6 +94,53 @@ def test_what_is_no_result_is_one_line(tmp_path, text) -> None:
     assert "\n" not in str(caught.value)
 
 
+CHECK = {"id": "strength", "load_case": "static", "state": "holds", "demand": 1.0}
+ROPE = {"grade": "a", "size_id": "8 mm", "standing": "chosen"}
+SELECTION = {"candidates": [ROPE], "chosen": {"cost": 8.0}, "currency": "EUR"}
+WHOLE = {"checks": [CHECK], "selection": SELECTION, "pose": {"length_m": [1.5, 2]}}
+
+
+def nested(depth: int) -> object:
+    return [nested(depth - 1)] if depth else 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "fault"),
+    [
+        ({"checks": None}, "checks: is an empty value (expected a list)"),
+        ({"checks": [None]}, "checks[0]: is an empty value (expected a mapping)"),
+        ({"checks": [CHECK, {"id": "a", "load_case": "b"}]}, "checks[1].state: is an empty value"),
+        ({"checks": [{**CHECK, "demand": "x"}]}, "checks[0].demand: is 'x' (expected a number)"),
+        ({"checks": [{**CHECK, "id": ["a"]}]}, "checks[0].id: is a list (expected a text)"),
+        ({"selection": []}, "selection: is a list (expected a mapping, or null)"),
+        ({"selection": {"candidates": None}}, "selection.candidates: is an empty value"),
+        ({"selection": {"candidates": [{"grade": "a"}]}}, "selection.candidates[0].size_id: is an"),
+        ({"selection": {"chosen": {"cost": "8"}}}, "selection.chosen.cost: is '8' (expected a num"),
+        ({"selection": {"currency": ["EUR"]}}, "selection.currency: is a list (expected a text"),
+        ({"provenance": "x"}, "provenance: is 'x' (expected a mapping)"),
+        ({"pose": {"length_m": [1, 10**400]}}, "pose.length_m[1]: is too large, or no number"),
+        ({"pose": float("inf")}, "pose: is too large, or no number (expected a finite number)"),
+        ({"pose": float("nan")}, "pose: is too large, or no number (expected a finite number)"),
+        ({"name": "\ud800"}, "name: holds half a letter"),
+        ({"pose": {"\udfff": 1}}, "pose.?: holds half a letter"),
+        ({"pose": nested(900)}, "is nested too deeply (expected at most 24 levels)"),
+    ],
+)
+def test_a_result_that_was_tampered_with_is_told_by_field(tmp_path, changes, fault) -> None:
+    path = result(tmp_path, **WHOLE)
+    assert read_result(path)["checks"] == [CHECK]
+    path = result(tmp_path, **{**WHOLE, **changes})
+    with pytest.raises(InputError) as caught:
+        read_result(path)
+    assert fault in str(caught.value).splitlines()[0]
+
+
+def test_a_huge_result_is_not_read(tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr("designer.io.results._LARGEST_RESULT_BYTES", 20)
+    with pytest.raises(InputError, match="cannot be read: it has more than"):
+        read_result(result(tmp_path))
+
+
 def test_a_result_that_is_not_there(tmp_path) -> None:
     with pytest.raises(InputError, match="cannot be read: no such file"):
         read_result(tmp_path / "none.json")

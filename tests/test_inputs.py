@@ -1,4 +1,4 @@
-"""What is no regular file is refused at once, whatever command is to read it."""
+"""What is no regular file is refused at once, whatever command is to read or to write it."""
 
 from __future__ import annotations
 
@@ -88,3 +88,53 @@ def test_a_file_that_is_exchanged_for_a_pipe_is_not_waited_for(
     monkeypatch.setattr(Path, "stat", lambda self: state)
     with pytest.raises(OSError, match="it is a pipe, not a file"):
         open_input(path)
+
+
+REGION = "workspace: {region: {prism: anchors, z: [1 m, 4 m], inset: 2 m}, samples: 50}\n"
+WRITING = {
+    "schema": "schema -o {}",
+    "lengths": "lengths study.yaml --poses poses.csv -o {}.csv",
+    "export": "export study.yaml --to caspr -o {}_bodies.xml",
+    "verify": "verify -o {}",
+    "plan": "diagnose --plan region.yaml --unknown anchors --length-noise 1mm -o {}.csv",
+    "report": "report study.yaml -o {}",
+    "compare": "compare study.yaml study.yaml -o {}",
+    "init": "init {}",
+}
+
+
+@pytest.mark.parametrize("name", ["pipe", "x" * 256])
+@pytest.mark.parametrize("command", WRITING.values(), ids=WRITING)
+def test_an_output_that_is_no_file_is_refused_before_the_work(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    command: str,
+    name: str,
+) -> None:
+    def work(*_: object, **__: object) -> None:
+        raise AssertionError
+
+    for place in (
+        "designer.analysis.analyse.Analysis.begin",
+        "designer.reference.page.compute",
+        "designer.export.robot.ExportedRobot.of",
+        "designer.diagnosis.plan.plan",
+    ):
+        monkeypatch.setattr(place, work)
+    monkeypatch.chdir(tmp_path)
+    Path("study.yaml").write_text(STUDY)
+    Path("region.yaml").write_text(STUDY + REGION)
+    Path("poses.csv").write_text("x_m,y_m,z_m\n10,6,4\n")
+    if name == "pipe":
+        for ending in ("", ".csv", "_bodies.xml"):
+            os.mkfifo(f"pipe{ending}")
+    before = sorted(path.name for path in tmp_path.iterdir())
+    monkeypatch.setattr("sys.argv", ["designer", *command.format(name).split()])
+    with pytest.raises(SystemExit) as stopped:
+        main()
+    told = capsys.readouterr().err
+    assert stopped.value.code == 2
+    assert len(told.splitlines()) == 1
+    assert sorted(path.name for path in tmp_path.iterdir()) == before
+    assert not any(path.is_file() for path in tmp_path.glob("pipe*"))

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from designer.errors import OutputError
-from designer.io.output import output_folder, write_new_file
+from designer.io.output import output_folder, require_file, write_file, write_new_file
 
 
 def test_files_appear_when_all_is_done(tmp_path) -> None:
@@ -276,4 +276,86 @@ def test_init_on_a_full_disk_leaves_no_file(tmp_path: Path, room: int) -> None:
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "cannot be written (File too large)" in done.stderr
+    assert everything(tmp_path) == []
+
+
+posix = pytest.mark.skipif(os.name != "posix", reason="pipes and links of POSIX")
+KINDS = {"pipe": os.mkfifo, "folder": os.mkdir} if os.name == "posix" else {}
+
+
+@posix
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("write", [require_file, lambda path: write_file(path, "new")])
+def test_what_is_no_file_is_not_replaced(tmp_path: Path, write, kind: str) -> None:
+    path = tmp_path / "a"
+    KINDS[kind](path)
+    (tmp_path / "link").symlink_to("a")
+    before = path.stat()
+    for name in ("a", "link"):
+        with pytest.raises(OutputError, match=f"{name}: is a {kind}"):
+            write(tmp_path / name)
+    assert path.stat().st_ino == before.st_ino
+    assert everything(tmp_path) == ["a", "link"]
+
+
+@posix
+def test_a_file_is_written_through_a_link(tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    for name in ("elsewhere/there", "elsewhere/not_yet"):
+        link = tmp_path / Path(name).name
+        link.symlink_to(name)
+        (tmp_path / "elsewhere" / "there").write_text("old")
+        require_file(link)
+        assert (tmp_path / "elsewhere" / "there").read_text() == "old"
+        write_file(link, "new")
+        assert link.is_symlink()
+        assert (tmp_path / name).read_text() == "new"
+
+
+@posix
+def test_a_folder_keeps_its_links_and_pipes(tmp_path: Path) -> None:
+    (tmp_path / "target.txt").write_text("old")
+    (tmp_path / "a.txt").symlink_to("target.txt")
+    with pytest.raises(RuntimeError), output_folder(tmp_path, ["a.txt"]) as building:
+        (building / "a.txt").write_text("new")
+        raise RuntimeError
+    with output_folder(tmp_path, ["a.txt"]) as building:
+        (building / "a.txt").write_text("new")
+    assert (tmp_path / "a.txt").is_symlink()
+    assert (tmp_path / "target.txt").read_text() == "new"
+    os.mkfifo(tmp_path / "b.txt")
+    worked = False
+    with pytest.raises(OutputError, match=r"b\.txt: is a pipe"), output_folder(tmp_path, ["b.txt"]):
+        worked = True
+    assert not worked
+    with (
+        pytest.raises(OutputError, match=r"b\.txt: is a pipe"),
+        output_folder(tmp_path) as building,
+    ):
+        for name in ("a.txt", "b.txt"):
+            (building / name).write_text("newer")
+    assert (tmp_path / "target.txt").read_text() == "new"
+    assert everything(tmp_path) == ["a.txt", "b.txt", "target.txt"]
+
+
+@pytest.mark.parametrize("n_letters", [255, 256])
+def test_the_longest_name(tmp_path: Path, n_letters: int) -> None:
+    path = tmp_path / ("é" * 127 + "x" * (n_letters - 254))
+    if n_letters == 255:
+        write_file(path, "a")
+        path.unlink()
+        write_new_file(path, "a")
+        assert path.read_text() == "a"
+        return
+    for write in (require_file, lambda path: write_file(path, "a")):
+        with pytest.raises(OutputError, match="cannot be written"):
+            write(path)
+    with pytest.raises(OutputError, match="cannot be written"), output_folder(tmp_path) as building:
+        (building / path.name).write_text("a")
+
+
+def test_a_new_file_at_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(OutputError, match="exists already"):
+        write_new_file(Path(), "a")
     assert everything(tmp_path) == []

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import time
 
 import pytest
 
-from designer.cli import terminal
+from designer.cli import commands, terminal
+from designer.errors import Fault, InputError, OutputError, described
 
 
 def test_the_time_left_is_reckoned_from_the_first_step_on(
@@ -57,3 +59,67 @@ def test_work_that_says_nothing_is_told_to_go_on(
     told = capsys.readouterr().err.splitlines()
     assert len(told) > 3
     assert told[-1].endswith("verification" if shown == "bars" else "what is left")
+
+
+HOSTILE = "\x1b]0;a\x07\x1b[31m\x9b5m\u202e\r\udc80b"
+SHOWN = "?]0;a??[31m?5m?"
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        str(Fault(HOSTILE, 3, HOSTILE, HOSTILE, HOSTILE)),
+        str(InputError.at(HOSTILE, "is wrong")),
+        described(ValueError(HOSTILE)),
+    ],
+)
+def test_a_message_commands_no_terminal(told: str) -> None:
+    assert told.isprintable()
+    assert SHOWN in told
+
+
+def test_the_last_handler_commands_no_terminal(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def refuse() -> None:
+        raise OutputError(f"{HOSTILE}: cannot be written\nand more")
+
+    monkeypatch.setattr(commands, "app", refuse)
+    with pytest.raises(SystemExit):
+        commands.main()
+    told = capsys.readouterr().err.splitlines()
+    assert [line.isprintable() for line in told] == [True, True]
+    assert told[0].startswith(SHOWN)
+
+
+@pytest.mark.parametrize("is_terminal", [True, False])
+def test_tables_and_notes_command_no_terminal(
+    monkeypatch: pytest.MonkeyPatch, is_terminal: bool
+) -> None:
+    console = terminal._Console(
+        file=io.StringIO(), force_terminal=is_terminal, color_system=None, width=200
+    )
+    for name in ("_out", "_notes"):
+        monkeypatch.setattr(terminal, name, console)
+    table = terminal.bare_table(HOSTILE, title=HOSTILE)
+    table.add_row(HOSTILE)
+    terminal.show(table)
+    terminal.show(HOSTILE, markup=False)
+    terminal.print_left_out([HOSTILE, "10\u202fkN\u00a0"])
+    told = console.file.getvalue()
+    assert all(
+        line.replace("\u202f", "").replace("\u00a0", "").isprintable() for line in told.splitlines()
+    )
+    assert told.count("0;a?") == 5
+    assert "10\u202fkN\u00a0" in told
+
+
+def test_progress_still_moves_the_cursor(monkeypatch: pytest.MonkeyPatch) -> None:
+    console = terminal._Console(file=io.StringIO(), force_terminal=True, width=80)
+    monkeypatch.setattr(terminal, "_notes", console)
+    with terminal.ProgressBars() as bars, bars.task(HOSTILE, 2) as advance:
+        bars(HOSTILE)
+        advance(1)
+    told = console.file.getvalue()
+    assert "\x1b[?25l" in told
+    assert "\x1b]0;a" not in told

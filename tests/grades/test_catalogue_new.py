@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
+import os
+import re
 import sys
+import zlib
 from pathlib import Path
 
 import pytest
@@ -17,6 +21,7 @@ from designer.cli.commands import app
 from designer.errors import InputError
 from designer.grades.files import read_grade
 from designer.grades.registry import load_catalogue
+from designer.io import pdf_table
 from designer.io.maker_table import known_unit, read_maker_table
 
 GERMAN = """Acme Seile; Ausgabe 2024;;;
@@ -216,6 +221,67 @@ def test_a_damaged_pdf_gets_a_line() -> None:
     pytest.importorskip("pdfplumber")
     (line,) = refused("%PDF-1.7\n")
     assert line.startswith("acme.csv: this is no PDF that can be read")
+
+
+def pdf_of(*objects: bytes) -> str:
+    """Write a PDF of such objects, the catalogue first; returns its name."""
+    content, places = b"%PDF-1.4\n", []
+    for number, each in enumerate(objects, start=1):
+        places.append(len(content))
+        content += b"%d 0 obj\n%b\nendobj\n" % (number, each)
+    table = b"".join(b"%010d 00000 n \n" % place for place in places)
+    size = len(objects) + 1
+    table = b"xref\n0 %d\n0000000000 65535 f \n%b" % (size, table)
+    end = b"trailer<</Size %d/Root 1 0 R>>\nstartxref\n%d\n%%%%EOF" % (size, len(content))
+    Path("acme.pdf").write_bytes(content + table + end)
+    return "acme.pdf"
+
+
+def stream(content: bytes, head: bytes = b"") -> bytes:
+    return b"<<%b/Length %d>>stream\n%b\nendstream" % (head, len(content), content)
+
+
+def with_forms(n_levels: int) -> list[bytes]:
+    """Return a page whose forms each show the next one ten times."""
+    form = b"/Type/XObject/Subtype/Form/BBox[0 0 9 9]/Resources<</XObject<</F %d 0 R>>>>"
+    forms = [stream(b"/F Do " * 10, form % (number + 6)) for number in range(n_levels)]
+    return [stream(b"/F Do " * 10), *forms, stream(b"0 0 m 9 9 l S", form % 5)]
+
+
+def unpacked(n_megabytes: int) -> list[bytes]:
+    packer = zlib.compressobj(9)
+    blocks = [packer.compress(bytes(1 << 20)) for _ in range(n_megabytes)]
+    content = zlib.compress(b"".join(blocks) + packer.flush(), 9)
+    return [stream(content, b"/Filter[/FlateDecode/FlateDecode]"), b"null"]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name != "posix", reason="limits of POSIX")
+@pytest.mark.parametrize("contents", [with_forms(8), unpacked(4000)], ids=["work", "memory"])
+def test_a_small_pdf_that_unpacks_without_end(
+    monkeypatch: pytest.MonkeyPatch, contents: list[bytes]
+) -> None:
+    pytest.importorskip("pdfplumber")
+    monkeypatch.setattr(pdf_table, "_LONGEST_S", 3)
+    resources = b"/Resources<</XObject<</F 5 0 R>>>>/MediaBox[0 0 600 800]/Contents 4 0 R"
+    name = pdf_of(
+        b"<</Type/Catalog/Pages 2 0 R>>",
+        b"<</Type/Pages/Kids[3 0 R]/Count 1>>",
+        b"<</Type/Page/Parent 2 0 R%b>>" % resources,
+        *contents,
+    )
+    assert Path(name).stat().st_size < 10_000
+    result = CliRunner().invoke(app, ["catalog", "new", name])
+    assert isinstance(result.exception, InputError), result.output
+    (fault,) = result.exception.faults
+    assert re.search("reading it takes over 60 s or 2 GB|Unable to allocate", fault.problem)
+    resource = importlib.import_module("resource")
+    assert resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss < 2.2e6
+
+
+def test_heads_command_no_terminal() -> None:
+    result = new(GERMAN.replace("Preis", "Preis\x9b31m"), *LIKE, *SAID)
+    assert "left out: Preis?31m" in result.output
 
 
 def test_the_library_for_pdfs_is_named_where_it_is_missing(

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import importlib
 import random
+import re
+import zipfile
+from collections.abc import Callable
 from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -18,6 +21,7 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
 from designer.errors import Fault, InputError
+from designer.measured import formats
 from designer.model.measured_data import Measured
 
 
@@ -202,6 +206,105 @@ def test_a_library_that_is_missing(log: Log, start: bytes, monkeypatch: pytest.M
     (fault,) = log.faults(start)
     assert "which reads such, is missing" in fault.problem
     assert fault.expected.startswith("pip install 'cdpr-designer[")
+
+
+def change_sheet(path: Path, change: Callable[[bytes], bytes]) -> None:
+    """Change the sheet of a workbook as a faulty writer might."""
+    with zipfile.ZipFile(path) as book:
+        parts = {name: book.read(name) for name in book.namelist()}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as book:
+        for name, content in parts.items():
+            book.writestr(name, change(content) if name.endswith("sheet1.xml") else content)
+
+
+@pytest.mark.parametrize("dimension", [b'<dimension ref="A3:C9"/>', b'<dimension ref="B5"/>', b""])
+def test_all_rows_of_a_sheet_are_read_whatever_it_says_of_them(log: Log, dimension: bytes) -> None:
+    before = log.read()
+    write_workbook(log.folder / "log.xlsx", cells(log))
+    change_sheet(
+        log.folder / "log.xlsx", lambda sheet: re.sub(rb"<dimension [^>]*/>", dimension, sheet)
+    )
+    same(read_as(log, "log.xlsx"), before)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (b'<row r="9"', b'<row r="8"'),
+        (b'<row r="9"', b'<row r="5"'),
+        (b'<row r="9"', b'<row r="999999999999"'),
+        (b'<c r="B9"', b'<c r="C9"'),
+    ],
+)
+def test_no_cell_of_a_sheet_is_dropped(log: Log, old: bytes, new: bytes) -> None:
+    log.read()
+    write_workbook(log.folder / "log.xlsx", cells(log))
+    change_sheet(log.folder / "log.xlsx", lambda sheet: sheet.replace(old, new))
+    (fault,) = faults_as(log, "log.xlsx")
+    assert re.search(r"row \d+ follows row \d+, or has a cell twice", fault.problem)
+
+
+def test_cells_of_a_sheet_stand_in_any_order(log: Log) -> None:
+    before = log.read()
+    write_workbook(log.folder / "log.xlsx", cells(log))
+
+    def reverse(row: re.Match[bytes]) -> bytes:
+        return row[1] + b"".join(reversed(re.findall(rb"<c .*?(?:</c>|/>)", row[2]))) + b"</row>"
+
+    change_sheet(
+        log.folder / "log.xlsx",
+        lambda sheet: re.sub(rb"(<row [^>]*>)(.*?)</row>", reverse, sheet),
+    )
+    same(read_as(log, "log.xlsx"), before)
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        b"<row><c><v>1</v></c></row>" * 200_000,
+        b"<row/>" * 1_000_000,
+        b"".join(b'<row><c r="XFD%d"><v>1</v></c></row>' % k for k in range(40, 4_000)),
+    ],
+    ids=["rows", "nothing", "columns"],
+)
+def test_a_small_workbook_that_unpacks_to_a_huge_one(
+    log: Log, monkeypatch: pytest.MonkeyPatch, rows: bytes
+) -> None:
+    monkeypatch.setattr(formats, "_MOST_CELLS", 50_000_000 // 10)
+    log.read()
+    write_workbook(log.folder / "log.xlsx", cells(log))
+    change_sheet(
+        log.folder / "log.xlsx",
+        lambda sheet: sheet.replace(b"</sheetData>", rows + b"</sheetData>"),
+    )
+    (fault,) = faults_as(log, "log.xlsx")
+    assert "it unpacks to more than" in fault.problem
+
+
+@pytest.mark.parametrize(("n_rows", "n_columns"), [(200_000, 10), (10_200_000, 1)])
+def test_a_small_parquet_file_that_unpacks_to_a_huge_table(
+    log: Log, n_rows: int, n_columns: int
+) -> None:
+    log.read()
+    zeros = pa.chunked_array([pa.array(np.zeros(200_000))] * (n_rows // 200_000))
+    table = pa.table(dict.fromkeys(log.names[:n_columns], zeros))
+    path = log.folder / "log.parquet"
+    parquet.write_table(table, path, row_group_size=n_rows, compression="zstd")
+    assert path.stat().st_size < 1_000_000
+    (fault,) = faults_as(log, "log.parquet")
+    assert "it unpacks to more than" in fault.problem
+
+
+def test_a_log_that_hardly_changes_is_read(log: Log) -> None:
+    log.read()
+    names = [*log.names, "flag"]
+    rows = [[*map(float, row), 1.0] for row in log.rows] * 120
+    path = log.folder / "log.xlsx"
+    write_workbook(path, dict(zip(names, zip(*rows, strict=True), strict=True)))
+    unpacked = sum(part.file_size for part in zipfile.ZipFile(path).infolist())
+    assert unpacked > 1_000_000
+    with path.open("rb") as file:
+        assert formats.read_table(file, "log.xlsx").n_rows == 3_600
 
 
 def split(log: Log, lag_s: float = 0.0) -> None:
