@@ -109,7 +109,7 @@ def apart(read: Callable[..., Any], content: bytes, longest_s: int, *options: ob
             [sys.executable, "-P", "-c", _START, json.dumps(sys.path), task],
             input=content, capture_output=True, env=frugal, timeout=4 * longest_s, check=True,
         )  # fmt: skip
-        return json.loads(done.stdout)
+        return json.loads(done.stdout.splitlines()[-1])
     return None
 
 

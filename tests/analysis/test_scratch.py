@@ -30,7 +30,7 @@ def test_folders_of_killed_runs_go_and_those_of_others_stay(
     (tmp_path / "designer-link").symlink_to(tmp_path / "designer-notes")
     command = [sys.executable, "-c", AT_WORK]
     started = [subprocess.Popen(command, stdout=subprocess.PIPE) for _ in range(2)]
-    killed, living = started
+    killed = started[0]
     try:
         for process in started:
             assert process.stdout is not None
