@@ -129,8 +129,7 @@ def _tell(path: Path, robot: ForeignRobot, missing: tuple[Gap, ...]) -> None:
     cables = f"{len(robot.exit_points_m)} cables on {load}"
     typer.echo(f"{path} written: {visible(robot.name)}, {cables}.")
     for remarks in robot.remarks.values():
-        typer.echo("
-".join(f"  {visible(remark)}" for remark in remarks))
+        typer.echo("\n".join(f"  {visible(remark)}" for remark in remarks))
     if not missing:
         typer.echo(f"Next:  designer size {shlex.quote(str(path))}")
         return
