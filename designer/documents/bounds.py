@@ -70,6 +70,7 @@ BOUNDS: Mapping[str, Bound] = {
     "drag area": Bound(units.AREA, 0.0, 1e4, "the largest sails"),
     "frequency": Bound(units.FREQUENCY, 1e-3, 1e4, "from a swell of the sea to a note"),
     "stiffness": Bound(units.STIFFNESS, 1e-3, 1e12, "softer than a feather, or stiffer than rock"),
+    "rope oversize": Bound(units.RELATIVE, 0.0, 0.2, "steel wire ropes have up to 5 %"),
     "drum capacity": Bound(units.LENGTH, 1e-2, 2e4, "no cable is longer than some kilometres"),
     "gear ratio": Bound(units.NUMBER, 1e-2, 1e5, "no gear of a winch turns faster or slower"),
     "torque": Bound(units.MOMENT, 1e-4, 1e8, "from a toy to the drum of a mine hoist"),

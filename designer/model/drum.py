@@ -14,6 +14,8 @@ from designer.arrays import FloatArray
 MOST_LAYERS = 50
 DEAD_TURNS = 3
 """Turns that stay on the drum; crane standards ask for two at least."""
+ROPE_OVERSIZE = 0.05
+"""By how much a steel wire rope may be thicker than nominal, EN 12385-4."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,9 +24,11 @@ class Drum(checked.Value):
 
     A turn of layer k is a helix about the rope's centre, :math:`\sqrt{(\pi D_k)^2 + p^2}` with
     :math:`D_k = D + d + 2 (k - 1) h`. The rope of a layer lies between two turns of the one below,
-    which is :math:`h = \sqrt{d^2 - p^2 / 4}` lower: 0.866 d where turns touch. Where ropes cross
-    they lie higher, so that a drum takes up rather more. Layers have n and n - 1 turns by turns,
-    n of them between the flanges.
+    which is :math:`h = \sqrt{d^2 - p^2 / 4}` lower: 0.866 d where turns touch. Layers have n and
+    n - 1 turns by turns, n of them between the flanges.
+
+    On a smooth drum d is that of the thickest rope that may be delivered, of which fewer turns, and
+    fewer layers to the nearest, have room. In grooves it has as many, and longer: d is nominal.
 
     Parameters
     ----------
@@ -42,6 +46,8 @@ class Drum(checked.Value):
         From the axis to the first sheave, opposite the middle of the drum [m].
     fleet_angle_max_rad : float or None
         Largest angle of the rope to the plane across the axis [rad].
+    rope_oversize : float
+        By how much of its nominal diameter a rope may be thicker.
     """
 
     diameter_m: checked.Positive
@@ -51,17 +57,27 @@ class Drum(checked.Value):
     dead_turns: Annotated[int, checked.Number(least=0)] = DEAD_TURNS
     sheave_distance_m: checked.Positive | None = None
     fleet_angle_max_rad: checked.Positive | None = None
+    rope_oversize: checked.NotNegative = ROPE_OVERSIZE
 
     def fits(self, rope_m: float) -> bool:
         """Tell whether turns of a rope lie beside each other, and layers on each other."""
         pitch_m = self.groove_pitch_m
         return pitch_m is None or rope_m <= pitch_m < 2.0 * rope_m
 
+    def _thickest_m(self, rope_m: float) -> float:
+        """Return the diameter of the rope that the drum takes up least of, of a nominal one [m]."""
+        return rope_m * (1.0 + self.rope_oversize) if self.groove_pitch_m is None else rope_m
+
+    def layers_of(self, rope_m: float) -> int:
+        """Return how many layers of that are as high as those of a nominal rope [m]."""
+        return max(round(self.layers * rope_m / self._thickest_m(rope_m)), 1)
+
     def diameters_m(self, rope_m: float) -> FloatArray:
         """Return the diameter of each layer about the rope's centre (`MOST_LAYERS`,) [m]."""
-        pitch_m = self.groove_pitch_m or rope_m
-        step_m = math.sqrt(max(rope_m**2 - pitch_m**2 / 4.0, 0.0))
-        return np.asarray(self.diameter_m + rope_m + 2.0 * step_m * np.arange(MOST_LAYERS))
+        thick_m = self._thickest_m(rope_m)
+        pitch_m = self.groove_pitch_m or thick_m
+        step_m = math.sqrt(max(thick_m**2 - pitch_m**2 / 4.0, 0.0))
+        return np.asarray(self.diameter_m + thick_m + 2.0 * step_m * np.arange(MOST_LAYERS))
 
     def turn_m(self, rope_m: float) -> float:
         """Return the rope of one turn of the lowest layer [m]."""
@@ -72,7 +88,7 @@ class Drum(checked.Value):
 
         Beside the dead turns; none at all where the rope does not fit.
         """
-        pitch_m = self.groove_pitch_m or rope_m
+        pitch_m = self.groove_pitch_m or self._thickest_m(rope_m)
         turn_m = np.hypot(math.pi * self.diameters_m(rope_m), pitch_m)
         count = math.floor(self.length_m / pitch_m * (1.0 + 1e-12)) if self.fits(rope_m) else 0
         turns = np.where(np.arange(MOST_LAYERS) % 2 == 0, float(count), count - 1.0)
@@ -82,7 +98,7 @@ class Drum(checked.Value):
     def capacity_m(self, rope_m: float) -> float:
         """Return how much rope it takes up and pays out [m]."""
         turns, turn_m = self.taken_m(rope_m)
-        return float((turns * turn_m)[: self.layers].sum())
+        return float((turns * turn_m)[: self.layers_of(rope_m)].sum())
 
     def spooled(self, rope_m: float, stroke_m: float) -> tuple[float, int]:
         """Return turns beside the dead ones, and layers, of so much rope [m]; NaN and 0 for none.

@@ -69,7 +69,8 @@ def spooling_of(
             id="spooling",
             title="Spooling",
             formula="stroke ≤ rope in the layers of the drum beside its dead turns; D_k = D + d + "
-            "2 (k − 1) √(d² − p²/4)",
+            "2 (k − 1) √(d² − p²/4), "
+            + ("d nominal" if drum.groove_pitch_m else f"p = d, {drum.rope_oversize:.1%} oversize"),
             source="robot.winches.drum; helices about the rope's centre, each layer in the "
             "valleys of the one below",
             state=State.HOLDS if worst.stroke_m <= worst.capacity_m else State.FAILS,
@@ -107,4 +108,4 @@ def _remark(drum: Drum, spooled: Spooled, rope_m: float) -> str:
         return f"a rope of {1e3 * rope_m:.4g} mm does not fit the pitch of the grooves"
     if not spooled.layers:
         return "no room on the drum"
-    return f"{spooled.turns:.1f} turns in layer {spooled.layers} of {drum.layers}"
+    return f"{spooled.turns:.1f} turns in layer {spooled.layers} of {drum.layers_of(rope_m)}"

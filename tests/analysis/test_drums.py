@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -58,9 +59,13 @@ def test_capacity_is_that_of_turns_laid_on_each_other(seed: int) -> None:
     pitch_m = None if seed % 3 == 0 else rope_m * rng.uniform(1.01, 1.5)
     dead, layers = int(rng.integers(0, 5)), int(rng.integers(1, 6))
     length_m = (pitch_m or rope_m) * rng.uniform(7.1, 40.0)
-    drum = Drum(rope_m * rng.uniform(15.0, 40.0), length_m, layers, pitch_m, dead)
-    rows = laid(drum, rope_m, layers + 2)
-    turns = [helix_m(radius, pitch_m or rope_m) for row in rows for radius in row][dead:]
+    oversize = rng.uniform(0.0, 0.08)
+    drum = Drum(
+        rope_m * rng.uniform(15.0, 40.0), length_m, layers, pitch_m, dead, rope_oversize=oversize
+    )
+    thick_m = rope_m * (1.0 + oversize) if pitch_m is None else rope_m
+    rows = laid(drum, thick_m, layers + 2)
+    turns = [helix_m(radius, pitch_m or thick_m) for row in rows for radius in row][dead:]
     fitting = sum(map(len, rows[:layers])) - dead
     assert drum.capacity_m(rope_m) == pytest.approx(sum(turns[:fitting]), rel=1e-7)
     # Wound on until the stroke is on it.
@@ -75,8 +80,24 @@ def test_capacity_is_that_of_turns_laid_on_each_other(seed: int) -> None:
 
 
 def test_smooth_drum_has_layers_as_equilateral_triangles() -> None:
-    steps = np.diff(Drum(0.5, 1.0).diameters_m(0.02))
+    steps = np.diff(Drum(0.5, 1.0, rope_oversize=0.0).diameters_m(0.02))
     assert steps == pytest.approx(2.0 * 0.02 * math.sqrt(3.0) / 2.0)
+
+
+@pytest.mark.parametrize(
+    ("barrel_in", "length_in", "depth_in", "rope_in", "factor"),
+    [(18.0, 20.0, 10.0, 0.5, 0.925), (24.0, 24.0, 6.0, 1.0, 0.239)],
+)
+def test_smooth_drum_takes_up_less_than_trade_factors_allow(
+    barrel_in: float, length_in: float, depth_in: float, rope_in: float, factor: float
+) -> None:
+    """(A + D) A B K, in feet: the factors K of wire rope handbooks allow for oversize rope."""
+    trade_m = 0.3048 * (depth_in + barrel_in) * depth_in * length_in * factor
+    size_m, rope_m = np.array([barrel_in, length_in]) * 0.0254, rope_in * 0.0254
+    drum = Drum(*size_m.tolist(), round(depth_in / rope_in), dead_turns=0)
+    assert 0.95 * trade_m < drum.capacity_m(rope_m) < trade_m
+    exact = replace(drum, rope_oversize=0.0)
+    assert exact.capacity_m(rope_m) > trade_m
 
 
 @pytest.mark.parametrize(("rope_m", "fits"), [(0.004, True), (0.006, False), (0.0027, False)])

@@ -30,7 +30,9 @@ def test_drum_with_units(study_of: Callable[[str], Study]) -> None:
     assert (drum.layers, drum.dead_turns) == (2, 4)
     assert drum.fleet_angle_max_rad == pytest.approx(math.radians(1.5))
     smooth = study_of(STUDY % "drum_diameter: 0.3, drum: {length: 0.5}").robot.winches.drum
-    assert smooth == Drum(0.3, 0.5)
+    assert smooth == Drum(0.3, 0.5, rope_oversize=0.05)
+    exact = study_of(STUDY % "drum_diameter: 0.3, drum: {length: 0.5, rope_oversize: 2 %}")
+    assert exact.robot.winches.drum == Drum(0.3, 0.5, rope_oversize=0.02)
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from designer.documents.fields import Text, WholeNumber, list_of, only_word
 from designer.documents.section import Section, config_field
 from designer.io.config.regions import AnyRegion, Box, only_one_of
 from designer.model.cable import Attached, AttachedEach
-from designer.model.drum import DEAD_TURNS, MOST_LAYERS, Drum
+from designer.model.drum import DEAD_TURNS, MOST_LAYERS, ROPE_OVERSIZE, Drum
 from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import Region
 from designer.model.robot import Platform, Robot
@@ -116,6 +116,9 @@ class DrumSection(Section):
     fleet_angle_max: fields.FleetAngle | None = config_field("Largest fleet angle")
     """Between the rope at a flange and the plane across the axis. For grooved drums of several
     layers LEBUS International advises 0.25 to 1.25 deg, for one layer 3 deg at most."""
+    rope_oversize: fields.RopeOversize = config_field("Oversize of the rope", ROPE_OVERSIZE)
+    """By how much a rope may be thicker than nominal, for what a smooth drum takes up; steel wire
+    ropes by up to 5 % (EN 12385-4)."""
 
     def drum(self, diameter_m: float, layers: int) -> Drum:
         """Return the drum, of this diameter."""
@@ -127,6 +130,7 @@ class DrumSection(Section):
             self.dead_turns,
             self.sheave_distance,
             self.fleet_angle_max,
+            self.rope_oversize,
         )
 
 
