@@ -6,11 +6,11 @@ motors. With T the tension at the drum, which differs from that at the exit poin
 the sheaves (`designer.model.winches`), and v the rate of the unstrained length paid out, the winch
 gives
 
-.. math::  P = -T\,(1 + T / 2 EA)\, v
+.. math::  P = -T\,(1 + T / EA)\, v
 
-to a rope that lies on the drum free of load: work at the drum and what the rope takes along as
-strain, so that without losses of sheaves the sum over the winches is the rate of the energy of
-platform and cables. Its motor gives P/η where that is positive, and takes η P where the load drives
+to the rope, which it takes up as strained as it is there: without losses of sheaves the sum over
+the winches is the rate of the energy of platform and cables, that of the strain of the rope on the
+drums among it. Its motor gives P/η where that is positive, and takes η P where the load drives
 the winch.
 """
 
@@ -173,12 +173,12 @@ def path_requirements(analysis: Analysis) -> Iterator[Requirement]:
         yield from life_requirements(path.bent, path.life)
     winches = analysis.built.robot.winches
     asked = (
-        ("winch_speed", "Winch speed", "rate of the unstrained length", "m/s",
-         winches.speed_max_m_per_s, "speed_max", "speed_m_per_s"),
-        ("motor_speed", "Motor speed", "v i / ((D + d) / 2), rope in the innermost layer", "rad/s",
-         winches.motor_speed_rad_per_s, "motor.speed", "motor_speed_rad_per_s"),
-        ("motor_power", "Motor power", "T v / η hauling in, η T v paying out, T at the drum", "W",
-         winches.motor_power_W, "motor.power", "power_W"),
+        ("winch_speed", "Winch speed", "v (1 + T/EA), v the rate of the unstrained length",
+         "m/s", winches.speed_max_m_per_s, "speed_max", "drum_speed_m_per_s"),
+        ("motor_speed", "Motor speed", "v (1 + T/EA) i / ((D + d) / 2), rope in the lowest layer",
+         "rad/s", winches.motor_speed_rad_per_s, "motor.speed", "motor_speed_rad_per_s"),
+        ("motor_power", "Motor power", "P = T v (1 + T/EA) at the drum; P / η hauling in, η P else",
+         "W", winches.motor_power_W, "motor.power", "power_W"),
     )  # fmt: skip
     for id_, title, formula, unit, limit, field, quantity in asked:
         if limit is None or analysis.path is None:

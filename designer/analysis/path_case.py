@@ -57,8 +57,7 @@ class PathCase:
     @cached_property
     def speed_m_per_s(self) -> FloatArray:
         """Of the unstrained lengths, positive paying out (n_instants, n_cables) [m/s]."""
-        length_m, time_s = self.statics.length_m, self.motion.time_s
-        return np.asarray(np.gradient(length_m, time_s, axis=0, edge_order=2))
+        return self.motion.speeds_m_per_s(self.statics.length_m)
 
     @cached_property
     def drum_tension_N(self) -> FloatArray:
@@ -66,10 +65,15 @@ class PathCase:
         return self.winches.drum_tension_N(self.tension_N, self.speed_m_per_s > 0.0)
 
     @cached_property
+    def drum_speed_m_per_s(self) -> FloatArray:
+        """Of the ropes at the drums, strained as they are there (n_instants, n_cables) [m/s]."""
+        strain = self.drum_tension_N / self.statics.axial_stiffness_N
+        return np.asarray((1.0 + strain) * self.speed_m_per_s)
+
+    @cached_property
     def power_W(self) -> FloatArray:
         """Of each motor, negative where the load drives it (n_instants, n_cables) [W]."""
-        strain = self.drum_tension_N / self.statics.axial_stiffness_N
-        given = -self.drum_tension_N * (1.0 + 0.5 * strain) * self.speed_m_per_s
+        given = -self.drum_tension_N * self.drum_speed_m_per_s
         efficiency = self.winches.efficiency
         return np.where(given > 0.0, given / efficiency, given * efficiency)
 
@@ -92,7 +96,7 @@ class PathCase:
         if winches.drum_diameter_m is None:
             return None
         radius = 0.5 * (winches.drum_diameter_m + rope_diameter_m(self.loaded.cable))
-        return np.asarray(self.speed_m_per_s * winches.gear_ratio / radius)
+        return np.asarray(self.drum_speed_m_per_s * winches.gear_ratio / radius)
 
     @cached_property
     def energy_J(self) -> tuple[FloatArray, FloatArray]:
@@ -123,7 +127,7 @@ class PathCase:
         torque, rms, turning = self.torque_Nm, self.rms_torque_Nm, self.motor_speed_rad_per_s
         for k in range(self.statics.robot.n_cables):
             tension, drum_tension = self.tension_N[:, k], self.drum_tension_N[:, k]
-            speed, power = self.speed_m_per_s[:, k], self.power_W[:, k]
+            speed, power = self.drum_speed_m_per_s[:, k], self.power_W[:, k]
             yield {
                 "load_case": self.name,
                 "cable": k + 1,

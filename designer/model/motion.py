@@ -2,7 +2,9 @@ r"""How the platform moves along a path: where it is at some instants, how fast,
 
 Rows of a path are joined by a cubic spline of position and rotation vector, whose accelerations are
 continuous: in time where the rows have times; else along the chords from row to row, passed at a
-speed that rises and falls as half a cosine, so that acceleration starts and ends at zero. The
+speed that rises and falls as half a cosine, so that acceleration starts and ends at zero. Between
+rows with equal positions the position rests, and so does the turn between equal rotation vectors:
+there the spline begins anew, from rest. The
 rotation vector r of angle θ turns with
 
 .. math::
@@ -21,6 +23,7 @@ d'Alembert, for the wrench
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
@@ -29,10 +32,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from designer import checked
-from designer.arrays import FloatArray, frozen_array
+from designer.arrays import FloatArray, IntArray, frozen_array
 
 if TYPE_CHECKING:
-    from scipy.interpolate import CubicSpline
+    from scipy.interpolate import PPoly
 
 Ends = Literal["at_rest", "moving"]
 _INSTANTS = 400
@@ -41,6 +44,8 @@ _SMALL_RAD = 0.03
 """Angle below which a series of two terms is as exact as rounding leaves the closed form."""
 _LEVEL_RAD = 1e-12
 """What rounding leaves of a turn that never changes."""
+_AT_REST = 1e-6
+"""Over the largest speed of the platform: what rounding makes of the speed of a rope at rest."""
 _APART = 1e-11
 """Over the extent of the path: by how much an instant is moved whose place another has already."""
 
@@ -82,14 +87,23 @@ class Motion(checked.Value):
     def _tree(self) -> cKDTree:
         return cKDTree(self.positions_m)
 
-    def rates_at(self, positions_m: FloatArray) -> FloatArray:
-        """Return ω, a and α at positions (..., 3), zeros where no instant is, (..., 9)."""
-        rates = np.hstack([self.velocity[:, 3:], self.acceleration])
+    def instants_at(self, positions_m: FloatArray) -> IntArray:
+        """Return which instant is at positions (..., 3), -1 where none is (...)."""
         reach = 0.25 * _APART * _extent_m(self.positions_m)
         is_known = np.asarray(np.isfinite(positions_m).all(axis=-1, keepdims=True))
         distance, nearest = self._tree.query(np.where(is_known, positions_m, 0.0))
-        is_instant = is_known[..., 0] & (distance <= reach)
-        return np.where(is_instant[..., None], rates[np.where(is_instant, nearest, 0)], 0.0)
+        return np.where(is_known[..., 0] & (distance <= reach), nearest, -1)
+
+    def rates_at(self, positions_m: FloatArray) -> FloatArray:
+        """Return ω, a and α at positions (..., 3), zeros where no instant is, (..., 9)."""
+        rates = np.hstack([self.velocity[:, 3:], self.acceleration])
+        instant = self.instants_at(positions_m)
+        return np.where(instant[..., None] >= 0, rates[instant], 0.0)
+
+    def speeds_m_per_s(self, length_m: FloatArray) -> FloatArray:
+        """Return how fast lengths (n_instants, n_cables) grow; zero but for rounding is zero."""
+        speeds = np.gradient(length_m, self.time_s, axis=0, edge_order=2)
+        return np.where(np.abs(speeds) <= _AT_REST * np.abs(self.velocity).max(), 0.0, speeds)
 
     def inertia_wrench_N(
         self,
@@ -123,6 +137,8 @@ def timed(time_s: FloatArray, places: FloatArray, up: FloatArray, ends: Ends, na
     states = (spline(instants), spline(instants, 1), spline(instants, 2))
     start = "at rest at both ends" if ends == "at_rest" else "with free ends"
     words = f"a cubic spline in time through {len(time_s)} rows of {name}, {start}"
+    if (places[1:] == places[:-1]).all(axis=1).any():
+        words += ", and at rest between rows that are equal"
     return _motion(instants, *states, up, words)
 
 
@@ -196,11 +212,38 @@ def _unit(vector: FloatArray) -> FloatArray:
     return vector / size if size > 0.0 else np.array([1.0, 0.0, 0.0])
 
 
-def _spline(knots: FloatArray, places: FloatArray, ends: Ends) -> CubicSpline:
-    from scipy.interpolate import CubicSpline  # takes longer to import than a path to be read
+def _spline(knots: FloatArray, places: FloatArray, ends: Ends) -> Callable[..., FloatArray]:
+    """Return the function of places (n, 6) at values of the parameter, and of their derivatives."""
+    halves = places[:, :3], unwrapped(places[:, 3:])
+    parts = [_resting_spline(knots, half, ends) for half in halves]
 
-    turned = np.hstack([places[:, :3], unwrapped(places[:, 3:])])
-    return CubicSpline(knots, turned, bc_type="clamped" if ends == "at_rest" else "not-a-knot")
+    def at(values: FloatArray, order: int = 0) -> FloatArray:
+        # Accelerations jump where a rest begins or ends, and are zero on one side.
+        after, before = (
+            np.hstack([part(side, order) for part in parts])
+            for side in (values, np.nextafter(values, -np.inf))
+        )
+        return np.where(np.abs(before) > np.abs(after), before, after)
+
+    return at
+
+
+def _resting_spline(knots: FloatArray, rows: FloatArray, ends: Ends) -> PPoly:
+    """Return the spline of rows (n_rows, 3) that rests between equal ones."""
+    from scipy.interpolate import CubicSpline, PPoly  # takes longer to import than a path to read
+
+    rests = np.flatnonzero((rows[1:] == rows[:-1]).all(axis=1))
+    at_end, at_rest = ("clamped" if ends == "at_rest" else "not-a-knot"), (1, np.zeros(3))
+    pieces, begin, end = [], 0, len(rows) - 1
+    for start in [*rests.tolist(), end]:
+        if start > begin:
+            law = at_end if begin == 0 else at_rest, at_end if start == end else at_rest
+            part = slice(begin, start + 1)
+            pieces.append(CubicSpline(knots[part], rows[part], bc_type=law).c)
+        if start < end:
+            pieces.append(np.concatenate([np.zeros((3, 1, 3)), rows[start, None, None]]))
+        begin = start + 1
+    return PPoly(np.concatenate(pieces, axis=1), knots)
 
 
 def _between(knots: FloatArray, count: int) -> FloatArray:
