@@ -79,7 +79,9 @@ def _holds(robot: Robot, places: FloatArray) -> BoolArray:
 def _adrift(robot: Robot, loaded: Loaded, places: FloatArray) -> Adrift:
     is_held = _holds(loaded.robot, places)
     before, body = robot.platform, loaded.robot.platform
-    push = body.wrench_N[:3] - before.wrench_N[:3] + body.centre_force_N - before.centre_force_N
+    push, at_rest = (
+        each.wrench_N[:3] + each.centre_force_N + each.drag_force_N for each in (body, before)
+    )
     example = places[int(is_held.argmin())] if len(places) else np.full(3, np.nan)
     share = float((~is_held).mean()) if len(places) else 0.0
-    return Adrift(loaded, share, example, float(np.linalg.norm(push)))
+    return Adrift(loaded, share, example, float(np.linalg.norm(push - at_rest)))

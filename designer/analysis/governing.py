@@ -172,20 +172,17 @@ def _pulls_N(statics: Statics) -> FloatArray:
 
 def _loads(loaded: Loaded, pose: Poses) -> list[tuple[str, FloatArray]]:
     """Return what acts on the platform beside the cables, by its name."""
-    body, case = loaded.robot.platform, loaded.case
+    body = loaded.robot.platform
     named = [("weight", -loaded.robot.weight_N * _up(loaded))]
-    wind = np.zeros(3)
-    if case.wind is not None and loaded.wind is not None:
-        wind = case.wind.pressure_Pa * (body.drag_area_m2 or 0.0) * loaded.wind
-        named.append(("wind on the platform", wind))
+    if loaded.wind is not None:
+        named.append(("wind on the platform", body.drag_force_N))
     inertia = loaded.robot.inertia_wrench_N(pose)
     if inertia is not None:
         named.append(("inertia force", inertia[0, :3]))
     if body.centre_force_N.any():
         named.append(("inertia force", body.centre_force_N))
-    constant_N = body.wrench_N[:3] - wind
-    if constant_N.any():
-        named.append(("force of the study or load case", constant_N))
+    if body.wrench_N[:3].any():
+        named.append(("force of the study or load case", body.wrench_N[:3]))
     return named
 
 

@@ -1,11 +1,12 @@
 r"""Load cases: what acts on platform and cables, as a change of the robot and of its cables.
 
 Wind of speed v has the pressure :math:`q = \tfrac12 \varrho v^2`, with 1.25 kg/m³ for air (EN
-1991-1-4, 4.5). On the platform it makes the force :math:`q\,C_d A`, at the origin of its frame; on
-a cable, per unstrained length, :math:`q\,C_d\,d`, along the wind and at full speed whatever the
-cable's inclination. Ice of thickness t adds the weight :math:`\pi t (d + t) \varrho_i g` and makes
-the cable :math:`d + 2 t` thick in the wind. What is attached along a cable is a second cylinder
-beside the rope: in the full wind, and iced all around, as the rope is.
+1991-1-4, 4.5). On the platform it makes the force :math:`q\,C_d A`, at a point of the body, the
+centre of mass unless given; on a cable, per unstrained length, :math:`q\,C_d\,d`, along the wind
+and at full speed whatever the cable's inclination. Ice of thickness t adds the weight
+:math:`\pi t (d + t) \varrho_i g` and makes the cable :math:`d + 2 t` thick in the wind. What is
+attached along a cable is a second cylinder beside the rope: in the full wind, and iced all around,
+as the rope is.
 
 The load per unstrained length is then one constant vector for all cables, so that each is still a
 catenary, in the plane of that vector and its chord: the robot is solved in a frame whose z axis
@@ -319,13 +320,13 @@ class LoadCase:
         mass = self.mass_on(body)
         given = self.wrench_N if wrench_N is None else wrench_N
         wrench = factor * (body.wrench_N if given is None else given)
-        centre = body.centre_force_N
+        centre, drag = body.centre_force_N, body.drag_force_N
         if inertia is not None:
             centre = centre + mass * self.acceleration_m_per_s2 * inertia
         if self.wind is not None and wind is not None:
             drag = self.wind.pressure_Pa * (body.drag_area_m2 or 0.0) * wind
-            wrench = wrench + np.concatenate([drag, np.zeros(3)])
-        body = replace(body, mass_kg=factor * mass, wrench_N=wrench, centre_force_N=centre)
+        body = replace(body, mass_kg=factor * mass, wrench_N=wrench)
+        body = replace(body, centre_force_N=centre, drag_force_N=drag)
         if body.motion is not None:
             inertia_kg_m2 = body.inertia_kg_m2 if self.inertia_kg_m2 is None else self.inertia_kg_m2
             body = replace(body, moving_mass_kg=mass, inertia_kg_m2=inertia_kg_m2)

@@ -42,6 +42,10 @@ class Platform(checked.Value):
         Constant force at the centre of mass, beside gravity, along those axes [N].
     drag_area_m2 : float or None
         Drag coefficient times area in the wind [m²]; None where it is not known.
+    drag_centre_m : array (3,) or None
+        Where the wind acts, in the body frame [m]; None for the centre of mass.
+    drag_force_N : array (3,)
+        Force of the wind there, along the axes of the world frame [N].
     mass_offset_kg : float
         Share of the mass that a load case does not replace: what the platform weighs beyond its
         drawing [kg].
@@ -61,6 +65,8 @@ class Platform(checked.Value):
     wrench_N: checked.Wrench = field(default_factory=lambda: frozen_array(np.zeros(6)))
     centre_force_N: checked.Vector = field(default_factory=lambda: frozen_array(np.zeros(3)))
     drag_area_m2: checked.NotNegative | None = None
+    drag_centre_m: checked.Vector | None = None
+    drag_force_N: checked.Vector = field(default_factory=lambda: frozen_array(np.zeros(3)))
     mass_offset_kg: float = 0.0
     inertia_kg_m2: Annotated[FloatArray, checked.Shape((3, 3))] | None = None
     motion: Motion | None = None
@@ -239,21 +245,30 @@ class Robot:
     def pull_N(self) -> FloatArray:
         """What the cables have to pull with, force and moment (6,), upright frame [N, N·m].
 
-        Against weight and wrench, about the origin of the body frame; without the moment of what
-        acts at the centre of mass, which turns with the platform.
+        Against weight, wind and wrench, about the origin of the body frame; without the moments of
+        what acts at points of the body, which turn with it.
         """
         applied = self.platform.wrench_N.reshape(2, 3) @ self.upright.T
         pull = -applied.ravel()
-        pull[:3] += self.centre_pull_N
+        pull[:3] += sum(force for _, force in self.turning_pulls_N)
         return np.asarray(pull)
 
     @property
     def centre_pull_N(self) -> FloatArray:
         """The part of that force that acts at the centre of mass (3,), upright frame [N]."""
+        return self.turning_pulls_N[0][1]
+
+    @property
+    def turning_pulls_N(self) -> list[tuple[FloatArray, FloatArray]]:
+        """Points of the body (3,), its centre of mass first, and the parts of it there (3,)."""
+        body, wind = self.platform, self.upright @ self.platform.drag_force_N
         pull = np.array([0.0, 0.0, self.weight_N])
         if self.cable_load_direction is not None:
             pull = self.leaning @ pull
-        return np.asarray(pull - self.upright @ self.platform.centre_force_N)
+        pull = pull - self.upright @ body.centre_force_N
+        if body.drag_centre_m is None:
+            return [(body.centre_of_mass_m, pull - wind)]
+        return [(body.centre_of_mass_m, pull), (body.drag_centre_m, -wind)]
 
     @property
     def at_rest(self) -> Robot:

@@ -145,11 +145,10 @@ class Encloser:
         rotation = upright.rotations
         levers = np.einsum("bij,nj->bni", rotation, self._robot.attachments_m)
         start = upright_exit_points_m(self._robot)
-        arm = rotation @ self._robot.platform.centre_of_mass_m
         load = np.repeat(self._robot.loads_N(), len(middle), axis=0)
-        centre = self._robot.centre_pull_N
-        load[:, 3:] += np.cross(arm, centre)
-        turns, load_turns, bent = self._turns(middle, half, levers, arm)
+        for point_m, pull_N in self._robot.turning_pulls_N:
+            load[:, 3:] += np.cross(rotation @ point_m, pull_N)
+        turns, load_turns, bent = self._turns(middle, half, levers, rotation)
         boxes = Boxes(
             half=half,
             corners=corners - middle[:, None, :2],
@@ -178,7 +177,7 @@ class Encloser:
         middle: FloatArray,
         half: FloatArray,
         levers: FloatArray,
-        arm: FloatArray,
+        rotation: FloatArray,
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return slopes of levers and of the load's moment with the turn, and how far others are.
 
@@ -191,12 +190,11 @@ class Encloser:
             return np.zeros((count, n, 3, 0)), np.zeros((count, 3, 0)), np.zeros((count, n + 1))
         axes = _turning_axes(middle[:, 3:]).transpose(0, 2, 1) @ self._robot.upright.T
         turns = np.cross(axes[:, None], levers[:, :, None])
-        centre = self._robot.centre_pull_N
-        load_turns = np.cross(np.cross(axes, arm[:, None]), centre)
-        size = np.append(
-            np.linalg.norm(self._robot.attachments_m, axis=1),
-            np.linalg.norm(self._robot.platform.centre_of_mass_m) * np.linalg.norm(centre),
-        )
+        load_turns, moment = np.zeros_like(axes), 0.0
+        for point_m, pull_N in self._robot.turning_pulls_N:
+            load_turns += np.cross(np.cross(axes, (rotation @ point_m)[:, None]), pull_N)
+            moment += float(np.linalg.norm(point_m) * np.linalg.norm(pull_N))
+        size = np.append(np.linalg.norm(self._robot.attachments_m, axis=1), moment)
         bent = (0.5 * np.linalg.norm(half[:, 3:], axis=1)[:, None] + _ULPS) * size * (1.0 + _ULPS)
         return turns.transpose(0, 1, 3, 2), load_turns.transpose(0, 2, 1), bent
 

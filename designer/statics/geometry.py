@@ -50,6 +50,14 @@ def centre_of_mass_arm_m(robot: Robot, poses: Poses) -> FloatArray:
     return np.asarray(upright_poses(robot, poses).rotation @ robot.platform.centre_of_mass_m)
 
 
+def turning_moment_Nm(robot: Robot, poses: Poses, first: int = 0) -> FloatArray:
+    """Return the moment of `Robot.turning_pulls_N` from one on, against them (..., 3) [N·m]."""
+    rotation, moment = upright_poses(robot, poses).rotation, np.zeros(3)
+    for point_m, pull_N in robot.turning_pulls_N[first:]:
+        moment = moment - np.cross(rotation @ point_m, pull_N)
+    return moment
+
+
 def upright_exit_points_m(robot: Robot) -> FloatArray:
     """Return the exit points in that frame (n_cables, 3) [m]."""
     if robot.is_upright:
@@ -65,9 +73,12 @@ def upright_situation(
     Exit points, where the cables leave their pulleys, are in the upright frame.
     """
     wrench = None if force_N is None else force_N @ robot.upright.T
-    inertia = _inertia_wrench_N(robot, poses)
-    if inertia is not None:
-        wrench = inertia if wrench is None else inertia + np.pad(wrench, ((0, 0), (0, 3)))
+    posed = _inertia_wrench_N(robot, poses)
+    if len(robot.turning_pulls_N) > 1:  # kernels know of the centre of mass alone
+        moment = np.broadcast_to(turning_moment_Nm(robot, poses, 1), (*poses.shape, 3))
+        posed = (0.0 if posed is None else posed) + np.pad(moment, ((0, 0), (3, 0)))
+    if posed is not None:
+        wrench = posed if wrench is None else posed + np.pad(wrench, ((0, 0), (0, 3)))
     return situation_of(robot, upright_poses(robot, poses), exit_points_m, wrench)
 
 
@@ -166,7 +177,7 @@ def load_wrench_N(robot: Robot, poses: Poses, force_N: FloatArray | None = None)
     force, moment = np.split(-robot.pull_N, 2)
     if force_N is not None:
         force = force + force_N @ robot.upright.T
-    moment = moment + np.cross(centre_of_mass_arm_m(robot, poses), -robot.centre_pull_N)
+    moment = moment + turning_moment_Nm(robot, poses)
     parts = [np.broadcast_to(force, shape), np.broadcast_to(moment, shape)]
     wrench = np.concatenate(parts, axis=-1)
     inertia = _inertia_wrench_N(robot, poses)

@@ -2,7 +2,8 @@ r"""Stiffness of the platform with sagging cables, at fixed unstrained lengths.
 
 A small displacement :math:`(δx, δω)` of the platform moves the attachment point with lever b by
 :math:`δx + δω × b`; each cable answers with its own tangent stiffness K_i and with its force F_i
-about a turned lever, and the weight P about the turned lever c of the centre of mass:
+about a turned lever, and the weight P about the turned lever c of the centre of mass, as any other
+force that acts at a point of the body:
 
 .. math::
 
@@ -28,6 +29,7 @@ from designer.statics.geometry import (
     cross_matrix,
     in_space,
     plane_vector,
+    upright_poses,
 )
 from designer.statics.inverse import Statics
 from designer.statics.pull_slopes import pull_slopes
@@ -87,9 +89,10 @@ def upright_stiffness(statics: Statics) -> FloatArray:
     F = cross_matrix(plane_vector(statics.force_x_N, statics.force_z_N, geometry.outward))
     turn = -K @ B
     moment = B @ K
-    arm = centre_of_mass_arm_m(robot, statics.poses)
-    weight = cross_matrix(-robot.centre_pull_N)
-    turning = (B @ turn + F @ B).sum(axis=-3) - weight @ cross_matrix(arm)
+    turning = (B @ turn + F @ B).sum(axis=-3)
+    rotation = upright_poses(robot, statics.poses).rotation
+    for point_m, pull_N in robot.turning_pulls_N:
+        turning = turning + cross_matrix(pull_N) @ cross_matrix(rotation @ point_m)
     left = np.concatenate([K.sum(axis=-3), moment.sum(axis=-3)], axis=-2)
     right = np.concatenate([turn.sum(axis=-3), turning], axis=-2)
     return _balanced(robot, np.concatenate([left, right], axis=-1))

@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 
 from designer.errors import Fault
+from designer.model.load_case import AIR_DENSITY_KG_PER_M3
 from designer.model.prism import Prism
+from designer.model.robot import Poses
+from designer.statics.geometry import load_wrench_N
 from designer.study import Study
 
 StudyOf = Callable[[str], Study]
@@ -34,6 +37,42 @@ load_cases:
 @pytest.fixture
 def windy(valid: str) -> str:
     return valid.replace("cable:\n", DRAG)
+
+
+BODY = """
+robot:
+  anchors: [[9, 0, 9], [9, 1, 9], [-4, 8, 9], [-5, 7, 9], [-4, -7, 9], [-5, -8, 9]]
+  platform:
+    mass: 100
+    attachments: [[1, -.2, 0], [1, .2, 0], [-.3, 1, 0], [-.7, .8, 0], [-.7, -.8, 0], [-.3, -1, 0]]
+    centre_of_mass: [0, 0, -0.2]
+    drag: {area: 2, coefficient: 1.1%s}
+cable: {density: 5290, youngs_modulus: 62.7 GPa, allowable_stress: 198 MPa, drag_coefficient: 0}
+workspace: {region: {points: [[0, 0, 3]]}}
+load_cases: [{name: wind, wind: {speed: 10, direction: [1, 0, 0]}}]
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "height_m"),
+    [("", -0.2), (", centre: [0, 0, 1.5 m]", 1.5), (", centre: [0, 0, 0]", 0)],
+)
+def test_wind_acts_at_its_centre_or_the_centre_of_mass(
+    given: str, height_m: float, study_of: StudyOf
+) -> None:
+    study = study_of(BODY % given)
+    robot, poses = study.robot, Poses.at([0.0, 0.0, 3.0], [0.3, 0.0, 0.0])
+    (loaded,) = study.load_cases[0].on(robot, study.material.cable(0.006))
+    moment = load_wrench_N(loaded.robot, poses)[3:] - load_wrench_N(robot, poses)[3:]
+    force = 0.5 * AIR_DENSITY_KG_PER_M3 * 100.0 * 2.2
+    lever = poses.rotation @ [0.0, 0.0, height_m]
+    assert moment == pytest.approx(np.cross(lever, [force, 0.0, 0.0]))
+
+
+def test_point_mass_has_no_centre_of_drag(windy: str, faults_of: FaultsOf) -> None:
+    (fault,) = faults_of(windy.replace("coefficient: 1.1}", "coefficient: 1.1, centre: [0, 0, 1]}"))
+    assert fault.field == "robot.platform.drag.centre"
+    assert "no meaning for a point mass" in fault.problem
 
 
 def test_what_they_become(windy: str, study_of: StudyOf) -> None:

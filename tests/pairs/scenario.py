@@ -130,7 +130,7 @@ def problem_of(
     if wind is not None:
         pressure = PRESSURE * case["wind"]["speed"] ** 2
         drag = platform["drag"]
-        force = force + pressure * drag["area"] * drag["coefficient"] * wind
+        centre_force = centre_force + pressure * drag["area"] * drag["coefficient"] * wind
     ice = case.get("ice") or {"thickness": 0.0}
     t, iced = ice["thickness"], ice.get("density", 900.0)
     loads, masses = [], []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -77,14 +78,24 @@ def balance(robot: Robot, cable: Cable, place: FloatArray, pull: FloatArray) -> 
     force = np.column_stack([pull * vectors[:, 0], pull * vectors[:, 1], -force_z / w])
     wrench = np.concatenate([force.sum(axis=0), np.cross(levers, force).sum(axis=0)])
     load = robot.loads_N()[0].copy()
-    load[3:] += np.cross(rotation @ robot.platform.centre_of_mass_m, robot.centre_pull_N)
+    for point_m, pull_N in robot.turning_pulls_N:
+        load[3:] += np.cross(rotation @ point_m, pull_N)
     top, bottom = catenary.end_tensions_N(length, w * pull * X, force_z, w)
     lift = np.where(D >= 0.0, -force_z, w * length + force_z) / w
     at_end = (pull * X) ** 2 + np.maximum(lift, 0.0) ** 2
     return (wrench - load / w)[robot.balance_rows], np.maximum(top, bottom) / w, at_end
 
 
+IN_WIND = replace(
+    COGIRO.platform,
+    drag_force_N=np.array([400.0, -250.0, 0.0]), drag_centre_m=np.array([0.2, 0.1, 1.5]),
+)  # fmt: skip
 CASES = {
+    "eight in wind": (
+        replace(COGIRO, platform=IN_WIND),
+        ((-2.0, 2.0), (-2.0, 2.0), (1.0, 2.5)),
+        0.3,
+    ),
     "four": (FOUR, ((30.0, 70.0), (20.0, 60.0), (-60.0, -30.0)), 0.0),
     "eight": (COGIRO, ((-2.0, 2.0), (-2.0, 2.0), (1.0, 2.5)), 0.3),
     "seven": (SEVEN, ((-1.0, 1.0), (-1.0, 1.0), (1.0, 2.5)), 0.3),

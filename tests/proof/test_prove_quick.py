@@ -48,6 +48,21 @@ def test_no_pose_exceeds_a_small_proof(fast_robot: Robot, steel: Material) -> No
     assert 100 < proof.boxes < 1000
 
 
+def test_proof_counts_wind_off_the_centre_of_mass(six_cable_robot: Robot) -> None:
+    body = replace(
+        six_cable_robot.platform,
+        drag_force_N=np.array([1500.0, -900.0, 0.0]), drag_centre_m=np.array([0.3, 0.2, 20.0]),
+    )  # fmt: skip
+    robot, cable = replace(six_cable_robot, platform=body), Cable(0.03, 4.0, 1e8, 4e5)
+    box, turn = Prism.box((3.0, 5.0), (-4.0, -2.0), (-80.0, -79.0)), [0.01, -0.02, 0.03]
+    space = Space(box, Orientations(frozen_array([turn])))
+    inside = space.places(box.inside_m(np.random.default_rng(1), 300))
+    used = utilisation(robot, cable, inside).max()
+    proof = prove(robot, cable, space, 0.5 * used, Budget(boxes=3000), within=0.02)
+    assert proof.status == "proved"
+    assert used <= proof.bound <= 1.03 * used
+
+
 def test_a_rope_that_fails_somewhere_is_refuted(fast_robot: Robot, steel: Material) -> None:
     strong = steel.cable(0.06)
     used = float(utilisation(fast_robot, strong, np.array([[200.0, 120.0, -90.0]]))[0])

@@ -85,7 +85,7 @@ def twin_tension_N(study: Study, found: CaseResult) -> FloatArray:
     twin = Twin(
         robot.exit_points_m, body.mass_kg, cable.axial_stiffness_N, cable.linear_density_kg_per_m,
         cable.diameter_m, body.attachments_m, body.centre_of_mass_m, body.wrench_N,
-        body.drag_area_m2 or 0.0, 1.2,
+        body.drag_area_m2 or 0.0, body.drag_centre_m, 1.2,
     )  # fmt: skip
     load = acting(
         twin,

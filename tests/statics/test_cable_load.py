@@ -49,6 +49,7 @@ def twin_of(robot: Robot, cable: Cable, wind: Wind) -> Twin:
         body.centre_of_mass_m,
         body.wrench_N,
         body.drag_area_m2 or 0.0,
+        body.drag_centre_m,
         wind.cable_drag_coefficient,
     )
 
@@ -105,6 +106,7 @@ def test_random_bodies_against_a_twin(seed: int, six_cable_robot: Robot) -> None
         centre_of_mass_m=np.array([0.2, -0.1, -0.3]),
         wrench_N=rng.normal(scale=100.0, size=6),
         drag_area_m2=2.0,
+        drag_centre_m=None if seed % 2 else rng.normal(size=3),
     )
     robot = replace(six_cable_robot, platform=body)
     cable = Cable(0.03, 4.0, 1e8, 4e5)

@@ -33,6 +33,7 @@ class Twin:
     centre_m: np.ndarray = field(default_factory=lambda: np.zeros(3))
     wrench_N: np.ndarray = field(default_factory=lambda: np.zeros(6))
     drag_area_m2: float = 0.0
+    drag_centre_m: np.ndarray | None = None
     cable_drag: float = 0.0
     pulley_radius_m: float = 0.0
 
@@ -48,6 +49,7 @@ class Acting:
     q: np.ndarray
     at_centre_N: np.ndarray
     at_origin: np.ndarray
+    drag_N: np.ndarray
 
 
 def acting(
@@ -62,13 +64,13 @@ def acting(
     radius = twin.diameter_m / 2
     ice = 900.0 * np.pi * ((radius + ice_m) ** 2 - radius**2)
     q = np.array([0, 0, -G * (twin.linear_mass + ice)])
-    origin = factor * twin.wrench_N
+    origin, drag = factor * twin.wrench_N, np.zeros(3)
     if wind is not None:
         push = 0.5 * AIR * np.linalg.norm(wind) * wind
         q = q + push * twin.cable_drag * 2 * (radius + ice_m)
-        origin = origin + np.concatenate([push * twin.drag_area_m2, np.zeros(3)])
+        drag = push * twin.drag_area_m2
     centre = np.array([0, 0, -G * factor * twin.mass_kg])
-    return Acting(q, centre if inertia_N is None else centre + inertia_N, origin)
+    return Acting(q, centre if inertia_N is None else centre + inertia_N, origin, drag)
 
 
 def reach_m(pull: np.ndarray, length: np.ndarray, q: np.ndarray, stiffness: float) -> np.ndarray:
@@ -103,10 +105,12 @@ def left_over(
     arm = twin.arms[cables] @ turn.T
     reach = reach_m(pull, length, load.q, twin.stiffness_N)
     gap = position + arm + reach - twin.exit_m[cables]
-    force = pull.sum(0) + load.at_centre_N + load.at_origin[:3]
+    force = pull.sum(0) + load.at_centre_N + load.at_origin[:3] + load.drag_N
     if twin.attach_m is None:
         return gap, force
+    drag_m = twin.centre_m if twin.drag_centre_m is None else twin.drag_centre_m
     moment = np.cross(arm, pull).sum(0) + np.cross(turn @ twin.centre_m, load.at_centre_N)
+    moment = moment + np.cross(turn @ drag_m, load.drag_N)
     return gap, np.concatenate([force, moment + load.at_origin[3:]])
 
 

@@ -55,6 +55,8 @@ class DragSection(Section):
         "Drag of the platform", expected="a drag coefficient such as 1.1"
     )
     """Force of the wind over its pressure times the area."""
+    centre: fields.Point | None = config_field("Centre of the drag")
+    """Where the wind acts, in the platform's own frame; at the centre of mass unless given."""
 
 
 class PlatformSection(Section):
@@ -78,6 +80,7 @@ class PlatformSection(Section):
 
     def platform(self) -> Platform:
         """Return the platform."""
+        centre = None if self.drag is None else self.drag.centre
         return Platform(
             self.mass,
             None if self.attachments is None else frozen_array(self.attachments),
@@ -85,6 +88,7 @@ class PlatformSection(Section):
             None if self.hull is None else frozen_array(list(product(*self.hull))),
             self.wrench.wrench_N,
             drag_area_m2=None if self.drag is None else self.drag.area * self.drag.coefficient,
+            drag_centre_m=None if centre is None else frozen_array(centre),
             inertia_kg_m2=None if self.inertia is None else fields.symmetric(self.inertia),
         )
 

@@ -207,6 +207,7 @@ def point_mass_has_no_body(parts: Parts) -> Iterator[Fault]:
     for path, first in (
         ("robot.platform.centre_of_mass", 0),
         ("robot.platform.hull", 0),
+        ("robot.platform.drag.centre", 0),
         ("pose.rotation_vector", 0),
         ("pose.quaternion", 1),  # the first number is 1 where nothing turns
         ("pose.euler.angles", 0),
