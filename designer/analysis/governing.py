@@ -16,7 +16,7 @@ from designer.model.space import named_place
 from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult, governing
-from designer.selection.criteria import rope_diameter_m
+from designer.selection.criteria import is_paid_out, rope_diameter_m
 from designer.statics.inverse import MasslessStatics, Statics, solve_massless, solve_sagging
 from designer.statics.shape import sag_m, stretch_m, string_frequency_Hz
 
@@ -49,9 +49,10 @@ class CableThere:
     pull_N : array (3,)
         On the platform, world frame [N].
     drum_tension_N : float
-        Behind the sheaves between exit point and drum, as the winch pulls [N].
+        Behind the sheaves between exit point and drum, as the winch pulls, or pays out along a path
+        [N].
     motor_torque_Nm : float or None
-        As it holds that or slowly pulls; None where the study has no motor [N·m].
+        As it does so; None where the study has no motor [N·m].
     """
 
     cable: int
@@ -137,10 +138,11 @@ def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | N
     ends = statics.exit_tension_N[0], statics.platform_tension_N[0]
     frequency = string_frequency_Hz(case.loaded, statics)[0]
     winches, exit_N = statics.robot.winches, statics.exit_tension_N[0]
+    paid_out = np.broadcast_to(is_paid_out(case.loaded, statics), (1, len(exit_N)))[0]
     torque_Nm: list[float | None] = [None] * len(exit_N)
     if winches.motor_torque_Nm is not None:
         rope_m = rope_diameter_m(case.loaded.cable)
-        torque_Nm = winches.torque_Nm(exit_N, rope_m).tolist()
+        torque_Nm = winches.torque_Nm(exit_N, rope_m, paid_out).tolist()
     rows = zip(
         case.cables.tolist(),
         statics.length_m[0].tolist(),
@@ -151,7 +153,7 @@ def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | N
         (strength_N / tension).tolist(),
         frequency.tolist(),
         pulls,
-        winches.drum_tension_N(exit_N).tolist(),
+        winches.drum_tension_N(exit_N, paid_out).tolist(),
         torque_Nm,
         strict=True,
     )

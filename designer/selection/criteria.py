@@ -9,13 +9,12 @@ from typing import Literal
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import Cable, Cables
 from designer.model.load_case import Loaded
-from designer.model.robot import Robot
-from designer.model.winches import Winches
+from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
-from designer.statics.inverse import Statics
+from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.modes import lowest_bound_Hz, platform_frequencies_Hz
 from designer.statics.shape import sag_ratio, string_frequency_Hz
 from designer.statics.stiffness import largest_displacement_m_per_N
@@ -112,7 +111,7 @@ def criteria_of(robot: Robot, workspace: Workspace, selection: Selection | None)
     """Return what a study asks of the equilibria of every load case beside strength."""
     return [
         *_of_cables(robot.tension_min_N, robot.sag_max),
-        *_of_winches(robot.winches),
+        *_of_winches(robot),
         *_of_workspace(workspace),
         *(() if selection is None else _of_limits(selection)),
     ]
@@ -152,10 +151,12 @@ def _of_cables(least_N: float, sag_max: float) -> Iterator[Criterion]:
     )
 
 
-def _of_winches(winches: Winches) -> Iterator[Criterion]:
-    """Yield what is asked of the winches in every equilibrium."""
+def _of_winches(robot: Robot) -> Iterator[Criterion]:
+    """Yield what is asked of the winches in every equilibrium, along a path as they turn there."""
+    winches, moves = robot.winches, robot.platform.motion is not None
     kept = winches.reeving_efficiency
-    losses = "" if kept == 1.0 else f", over the {kept:.4g} that its sheaves keep of it,"
+    paid_out = ", times that as it is paid out," if moves else ","
+    losses = "" if kept == 1.0 else f", over the {kept:.4g} that its sheaves keep of it{paid_out}"
     if winches.tension_max_N is not None:
         yield Criterion(
             id="winch_tension",
@@ -176,7 +177,7 @@ def _of_winches(winches: Winches) -> Iterator[Criterion]:
             id="winch_torque",
             title="Motor",
             formula="M = T (D + (2k - 1) d) / (2 i η) ≤ torque of the motor; rope in layer k, T at "
-            "the drum",
+            f"the drum{'; η times that as it is paid out, not over it' if moves else ''}",
             source=f"robot.winches.motor.torque; {WHERE}",
             unit="N*m",
             quantity=_motor_torque_Nm,
@@ -199,10 +200,28 @@ def _winch_capacity_N(statics: Statics) -> FloatArray:
     return np.where(np.isinf(largest_N), np.nan, largest_N)
 
 
-def _share_of_winch(_: Loaded, statics: Statics) -> FloatArray:
+def _share_of_winch(loaded: Loaded, statics: Statics) -> FloatArray:
     """Return tension over the largest of the winch (n, n_cables), NaN where it has no limit."""
-    drum_tension_N = statics.robot.winches.drum_tension_N(statics.exit_tension_N)
+    paid_out = is_paid_out(loaded, statics)
+    drum_tension_N = statics.robot.winches.drum_tension_N(statics.exit_tension_N, paid_out)
     return np.asarray(drum_tension_N / _winch_capacity_N(statics))
+
+
+def is_paid_out(loaded: Loaded, statics: Statics) -> BoolArray | bool:
+    """Tell which cables (n, n_cables) are paid out at poses (n,) of a path.
+
+    At rest none: there a winch is about to haul in.
+    """
+    motion = statics.robot.platform.motion
+    if motion is None:
+        return False
+    instant = motion.instants_at(statics.poses.position_m)
+    before = np.clip(instant - 1, 0, len(motion.time_s) - 3)
+    around = np.unique(before[:, None] + np.arange(3))
+    length_m = np.full((len(motion.time_s), statics.robot.n_cables), np.nan)
+    poses = Poses.at(motion.places[around])
+    length_m[around] = solve_sagging(statics.robot, poses, loaded.cable).length_m
+    return np.asarray((motion.speeds_m_per_s(length_m)[instant] > 0.0) & (instant[:, None] >= 0))
 
 
 def _why_other_tensions_may_do(statics: Statics) -> str:
@@ -214,9 +233,9 @@ def _why_other_tensions_may_do(statics: Statics) -> str:
 
 
 def _motor_torque_Nm(loaded: Loaded, statics: Statics) -> FloatArray:
-    """Return the torque of each motor (n, n_cables) at rest, its rope in the outermost layer."""
-    rope_m = rope_diameter_m(loaded.cable)
-    return statics.robot.winches.torque_Nm(statics.exit_tension_N, rope_m)
+    """Return the torque of each motor (n, n_cables), its rope in the outermost layer."""
+    rope_m, paid_out = rope_diameter_m(loaded.cable), is_paid_out(loaded, statics)
+    return statics.robot.winches.torque_Nm(statics.exit_tension_N, rope_m, paid_out)
 
 
 def rope_diameter_m(cable: Cable | Cables) -> FloatArray | float:

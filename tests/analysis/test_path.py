@@ -142,6 +142,45 @@ def test_each_instant_has_its_own_inertia_where_a_place_comes_twice() -> None:
     assert not motion.rates_at(motion.positions_m + 1e-3).any()
 
 
+def test_platform_rests_between_equal_rows() -> None:
+    """Also where one of position and orientation is kept alone, and within limits of speed."""
+    rng = np.random.default_rng(6)
+    rows, time_s = random_rows(rng, 7), np.array([0.0, 2.0, 4.5, 6.0, 8.0, 9.0, 12.0])
+    rows[2], rows[3, :3], rows[5, 3:] = rows[1], rows[2, :3], rows[4, 3:]
+    for ends in ("at_rest", "moving"):
+        motion = timed(time_s, rows, UP, ends, "rows")
+        for first, last, part in ((1, 2, slice(6)), (2, 3, slice(3)), (4, 5, slice(3, 6))):
+            inside = (motion.time_s >= time_s[first]) & (motion.time_s <= time_s[last])
+            places, target = motion.places[inside][:, part], rows[first, part]
+            if part.stop == 6 and part.start == 3:  # a rotation vector has turns to spare
+                places, target = places - places[0], 0.0
+            assert places == pytest.approx(np.broadcast_to(target, places.shape), abs=1e-6)
+            assert motion.velocity[inside][:, part] == pytest.approx(0.0, abs=1e-12)
+        assert "at rest between rows that are equal" in motion.words
+        at = motion.positions_m[np.searchsorted(motion.time_s, time_s)]
+        assert at == pytest.approx(rows[:, :3], abs=1e-6)
+        # It brakes until it rests, and the brake counts at the instant of its end.
+        stop = np.searchsorted(motion.time_s, time_s[1])
+        before, there = np.linalg.norm(motion.acceleration[[stop - 1, stop], :3], axis=1)
+        assert there == pytest.approx(before, rel=0.1)
+    turned = rows[[0, 1, 1, 4]] + np.array([0, 0, 0, 0.3, 0, 0]) * np.arange(4)[:, None]
+    around = limited(turned, UP, 0.5, "rows", 1.0, 1.0)
+    near = np.linalg.norm(around.positions_m - turned[1, :3], axis=1) < 1e-6
+    assert near.sum() > 1  # turns on the spot
+    assert np.abs(around.velocity[near, :3]).max() < 1e-9
+    assert np.abs(around.velocity[near, 3:]).max() > 0.1
+
+
+def test_speed_at_rest_has_no_direction() -> None:
+    rows = random_rows(np.random.default_rng(2), 3)[[0, 1, 1, 2]]
+    motion = timed(np.array([0.0, 3.0, 5.0, 9.0]), rows, UP, "at_rest", "rows")
+    length = np.linalg.norm(motion.positions_m - [3.0, 4.0, 9.0], axis=1)[:, None]
+    noisy = length * (1.0 + 1e-13 * np.random.default_rng(4).normal(size=length.shape))
+    resting = (motion.time_s > 3.0) & (motion.time_s < 5.0)
+    assert (motion.speeds_m_per_s(noisy)[resting] == 0.0).all()
+    assert np.abs(motion.speeds_m_per_s(noisy)[~resting]).max() > 0.1
+
+
 def study_on(base: str, folder: Path, rows: np.ndarray, time_s: Any, **more: Any) -> dict[str, Any]:
     """Return a study of the pairs along a path through rows, which it writes."""
     names = ["time_s", "x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"][: 1 + rows.shape[1]]
@@ -247,6 +286,78 @@ def test_winches_and_motors_against_what_they_do(tmp_path: Path) -> None:
     lines = analysis.path.to_csv().splitlines()
     assert len(lines) == 1 + len(case.motion.time_s)
     assert lines[0].startswith("load_case,time_s,x_m")
+
+
+LOSSES = {
+    **{"tension_max": 1e5, "drum_diameter": 0.3, "gear_ratio": 20.0, "efficiency": 0.8},
+    **{"sheave_efficiency": 0.9, "sheaves": 2, "motor": {"torque": 500.0}},
+}
+
+
+@pytest.mark.parametrize("base", ["crane", "four"])
+def test_limits_of_winches_follow_the_direction_of_motion(tmp_path: Path, base: str) -> None:
+    """A platform that is let down: no winch ever hauls in, and sheaves and gear help to hold."""
+    robot = BASES[base]["robot"] | {"winches": LOSSES}
+    rows = np.array([[6.0, 4.5, 6.0], [6.0, 4.5, 3.0], [6.0, 4.5, 1.0]])
+    path = {"path": {"file": "path.csv", "ends": "moving"}}
+    study = study_on(base, tmp_path, rows, [0, 4, 8], robot=robot, workspace=path)
+    analysis = analysed(study, tmp_path)
+    case, asked = shared_case(analysis), {each.id: each for each in analysis.requirements}
+    at_drum = 0.81 * case.tension_N
+    rope_m = case.loaded.cable.diameter_m
+    torque = at_drum * 0.8 * 0.5 * (0.3 + rope_m) / 20.0
+    assert asked["winch_tension"].demand == pytest.approx(at_drum.max())
+    assert asked["winch_torque"].demand == pytest.approx(torque.max())
+    rows_of_file = analysis.to_dict()["path"]["winches"]
+    assert max(row["torque_max_Nm"] for row in rows_of_file) == pytest.approx(torque.max())
+    assert max(row["drum_tension_max_N"] for row in rows_of_file) == pytest.approx(at_drum.max())
+    governing = analysis.to_dict()["governing"]["cables"]
+    assert max(row["drum_tension_N"] for row in governing) <= at_drum.max() * (1.0 + 1e-9)
+    # The other way round every winch hauls in; at rest each is about to.
+    up = study_on(base, tmp_path, rows[::-1], [0, 4, 8], robot=robot, workspace=path)
+    asked_up = {each.id: each for each in analysed(up, tmp_path).requirements}
+    lifted = torque.max() / 0.81**2 / 0.8**2
+    assert asked_up["winch_torque"].demand == pytest.approx(lifted, rel=0.05)
+
+
+def test_drums_take_up_strained_rope(tmp_path: Path) -> None:
+    """Of a soft family, that stretches by per cents: speeds and power, and the account of work."""
+    base = {name: part for name, part in BASES["crane"].items() if name != "selection"}
+    winches = {
+        **{"speed_max": 5.0, "drum_diameter": 0.3, "gear_ratio": 20.0},
+        "motor": {"torque": 500.0, "speed": 1e4, "power": 1e5},
+    }
+    rows = np.array([[5.0, 3.0, 4.0], [7.0, 4.0, 6.0], [6.0, 5.0, 3.0]])
+    soft = base["cable"] | {"youngs_modulus": 5e9}
+    text = study_on(
+        "crane", tmp_path, rows, [0, 4, 8], robot=base["robot"] | {"winches": winches}, cable=soft
+    )
+    del text["selection"]
+    analysis = analysed(text, tmp_path)
+    case, asked = shared_case(analysis), {each.id: each for each in analysis.requirements}
+    strain = case.tension_N / case.loaded.cable.axial_stiffness_N
+    assert strain.max() > 0.02
+    speed = derived(case.motion.time_s, case.statics.length_m, 1)
+    at_drum = np.abs(speed) * (1.0 + strain)
+    assert asked["winch_speed"].demand == pytest.approx(at_drum.max(), rel=1e-3)
+    turning = at_drum.max() * 20.0 / (0.15 + 0.5 * case.loaded.cable.diameter_m)
+    assert asked["motor_speed"].demand == pytest.approx(turning, rel=1e-3)
+    power = case.tension_N * at_drum
+    assert asked["motor_power"].demand == pytest.approx(power.max(), rel=1e-3)
+    rows_of_file = analysis.to_dict()["path"]["winches"]
+    fastest = max(
+        max(r["hauling_in_max_m_per_s"], r["paying_out_max_m_per_s"]) for r in rows_of_file
+    )
+    assert fastest == pytest.approx(asked["winch_speed"].demand)
+    # Work of the winches: energy of the platform and of strain, on the drums and between.
+    energy = energy_J(case, 240.0)
+    drawn, back = case.energy_J
+    time_s, strained = case.motion.time_s, 0.5 * case.tension_N * strain
+    free = (strained * case.statics.length_m).sum(axis=1)
+    on_drums = np.trapezoid(-strained * speed, time_s, axis=0).sum()
+    gained = energy[-1] + free[-1] - energy[0] - free[0] + on_drums
+    scale = float(np.ptp(energy))
+    assert float((drawn - back).sum()) == pytest.approx(gained, abs=2e-3 * scale)
 
 
 @pytest.mark.slow

@@ -213,7 +213,8 @@ def files_of(study: Text) -> list[str]:
         facing.get("table") if isinstance(facing, dict) else None,
         study.get("selection", {}).get("prices"),
     )
-    return [name for name in named if name == PRICES or name in PATHS or name in POSES]
+    files = (PRICES, *PATHS, *POSES)
+    return [name for name in named if name in files]
 
 
 POINT = ("crane", "four")
