@@ -6,10 +6,9 @@ import math
 from dataclasses import dataclass
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.winches import spooled_of
 from designer.grades.grade import Grade, Size
 from designer.model.drum import DEAD_TURNS, Drum
-from designer.selection.spooling import Spooled
+from designer.selection.spooling import Spooled, spooled_on
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +55,15 @@ class FabricatedCable:
             turn_m, dead_turns = self.drum.turn_m(self.size.diameter_m), self.drum.dead_turns
         dead_m = 0.0 if math.isnan(turn_m) else dead_turns * turn_m
         return math.ceil(10.0 * (self.longest_m + dead_m)) / 10.0
+
+
+def spooled_of(analysis: Analysis) -> tuple[Spooled, ...]:
+    """Return what becomes of each rope on its drum; nothing without ropes, or without a drum."""
+    drum, assignment = analysis.built.robot.winches.drum, analysis.assignment
+    if drum is None or not assignment.is_found:
+        return ()
+    lengths = assignment.verification.longest_m, assignment.verification.shortest_m
+    return spooled_on(drum, *lengths, [rope.size.diameter_m for rope in assignment.by_cable])
 
 
 def fabricated_cables(analysis: Analysis) -> list[FabricatedCable]:

@@ -9,11 +9,11 @@ import numpy as np
 from designer import __version__
 from designer.analysis.analyse import Analysis
 from designer.analysis.carries import carries_dict
+from designer.analysis.fabrication import spooled_of
 from designer.analysis.modes import PlatformModes
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.selection_json import selection_dict
 from designer.analysis.uncertainty.uncertainty import uncertainty_dict
-from designer.analysis.winches import spooled_of
 from designer.documents.plain import RESULT_FORMAT, Json, lies_in, plain, record
 from designer.model.space import named_place
 from designer.model.verdict import Verdict
