@@ -17,7 +17,11 @@ from designer.model.workspace import Workspace
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.modes import lowest_bound_Hz, platform_frequencies_Hz
 from designer.statics.shape import sag_ratio, string_frequency_Hz
-from designer.statics.stiffness import largest_displacement_m_per_N
+from designer.statics.stiffness import (
+    largest_displacement_m_per_N,
+    least_eigenvalue_N_per_m,
+    upright_stiffness,
+)
 from designer.study import Selection
 from designer.workspace.clearance import names_of, smallest_clearance
 from designer.workspace.interference import where_pairs_are_near
@@ -132,10 +136,13 @@ def _of_cables(least_N: float, sag_max: float) -> Iterator[Criterion]:
     yield Criterion(
         id="stability",
         title="Stability",
-        formula="smallest stiffness of the platform, cables of fixed length > 0",
+        formula="lowest eigenvalue of the platform's stiffness, cables of fixed length, turns as "
+        "displacements of the farthest attachment > 0",
         source=f"the potential energy has a minimum; {WHERE}",
         unit="N/m",
-        quantity=_stiffness_N_per_m,
+        quantity=lambda _, statics: least_eigenvalue_N_per_m(
+            statics.robot, upright_stiffness(statics)
+        )[:, None],
         limits=(0.0,),
         kind="above",
     )

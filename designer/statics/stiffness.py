@@ -25,7 +25,6 @@ from designer.model.robot import Robot
 from designer.physics import tangent
 from designer.statics.geometry import (
     cable_geometry,
-    centre_of_mass_arm_m,
     cross_matrix,
     in_space,
     plane_vector,
@@ -100,10 +99,19 @@ def upright_stiffness(statics: Statics) -> FloatArray:
 
 def is_stable(robot: Robot, stiffness: FloatArray) -> BoolArray:
     """Tell where a stiffness (..., dof, dof) of the robot is positive definite."""
+    return np.asarray(least_eigenvalue_N_per_m(robot, stiffness) > 0.0)
+
+
+def least_eigenvalue_N_per_m(robot: Robot, stiffness: FloatArray) -> FloatArray:
+    """Return the lowest eigenvalue of stiffnesses (..., dof, dof), turns at `reach_m` (...) [N/m].
+
+    Zero where rounding leaves no more of it, or they are not finite.
+    """
     K = scaled(robot, stiffness)
     K = np.where(np.isfinite(K).all(axis=(-2, -1), keepdims=True), K, 0.0)
     eigenvalues = np.linalg.eigvalsh(0.5 * (K + np.swapaxes(K, -1, -2)))
-    return np.asarray(eigenvalues[..., 0] > _SOFT * np.abs(eigenvalues).max(axis=-1))
+    least = eigenvalues[..., 0]
+    return np.where(np.abs(least) <= _SOFT * np.abs(eigenvalues).max(axis=-1), 0.0, least)
 
 
 def scaled(robot: Robot, stiffness: FloatArray) -> FloatArray:

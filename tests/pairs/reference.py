@@ -614,19 +614,29 @@ def settle(
     return equations.state(cables) if is_closed else None
 
 
-def compliance(state: State, step: float = 1e-6) -> np.ndarray | None:
-    """Return displacement under forces at the body's origin, by differences (n, n)."""
+def compliance(state: State, step: float = 1e-6, reach_m: float = 0.0) -> np.ndarray | None:
+    """Return displacement under forces at the body's origin, by differences (n, n).
+
+    With a reach also turns times it, under moments over it.
+    """
     problem = state.problem
-    axes = problem.freedoms[np.abs(problem.freedoms[:, :3]).max(axis=1) > 0.0, :3]
+    axes = problem.freedoms
+    if reach_m == 0.0:
+        axes = axes[np.abs(axes[:, :3]).max(axis=1) > 0.0]
     force = step * problem.scale_N
     columns = []
     for axis in axes:
         ends = []
         for sign in (1.0, -1.0):
-            pushed = replace(problem, force_N=problem.force_N + sign * force * axis)
+            pushed = replace(
+                problem,
+                force_N=problem.force_N + sign * force * axis[:3],
+                moment_Nm=problem.moment_Nm + sign * force * reach_m * axis[3:],
+            )
             moved = settle(pushed, state.pose, state.total_m, near=state)
             if moved is None:
                 return None
-            ends.append(moved.pose.position_m)
+            turn = Rotation.from_matrix(moved.pose.rotation @ state.pose.rotation.T).as_rotvec()
+            ends.append(np.concatenate([moved.pose.position_m, reach_m * turn]))
         columns.append(axes @ (ends[0] - ends[1]) / (2.0 * force))
     return np.array(columns).T
