@@ -42,7 +42,7 @@ class RopeLimits:
         [N/m].
     excitation_Hz : (float, float) or None
         Band from the lowest to the highest frequency of what shakes the robot [Hz], in which no
-        cable shall swing as a string.
+        natural frequency of cables and platform shall lie.
     drum_capacity_m : float or None
         Rope that a drum takes up, beside its dead turns [m].
     platform_frequency_Hz : tuple of float or None

@@ -18,7 +18,8 @@ from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult, governing
 from designer.selection.criteria import is_paid_out, rope_diameter_m
 from designer.statics.inverse import MasslessStatics, Statics, solve_massless, solve_sagging
-from designer.statics.shape import sag_m, stretch_m, string_frequency_Hz
+from designer.statics.modes import cable_frequencies_Hz
+from designer.statics.shape import sag_m, stretch_m
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
@@ -45,7 +46,7 @@ class CableThere:
     safety_factor : float
         What is left of the breaking load over the larger end tension.
     frequency_Hz : float
-        Lowest one of a string of its mean end tension T, sqrt(T / m) / (2 l), with ice [Hz].
+        Lowest one between fixed ends, with sag and ice [Hz].
     pull_N : array (3,)
         On the platform, world frame [N].
     drum_tension_N : float
@@ -136,7 +137,7 @@ def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | N
     strength_N = factor * case.loaded.cable.allowable_tension_N
     tension = statics.cable_tension_N[0]
     ends = statics.exit_tension_N[0], statics.platform_tension_N[0]
-    frequency = string_frequency_Hz(case.loaded, statics)[0]
+    frequency = cable_frequencies_Hz(statics, case.loaded.moving_density_kg_per_m)[0]
     winches, exit_N = statics.robot.winches, statics.exit_tension_N[0]
     paid_out = np.broadcast_to(is_paid_out(case.loaded, statics), (1, len(exit_N)))[0]
     torque_Nm: list[float | None] = [None] * len(exit_N)

@@ -1,46 +1,36 @@
-"""How the platform oscillates at the governing pose, and where the cables' own mass joins in."""
+"""How platform and cables oscillate at the governing pose."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from designer.arrays import FloatArray
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.load_case import STATIC
 from designer.model.robot import Platform
 from designer.model.space import named_place
-from designer.physics.inertia import NEXT_TERM
 from designer.statics.inverse import Statics
-from designer.statics.modes import Mode, knows_inertia, lowest_bound_Hz, platform_modes
-from designer.statics.shape import string_frequencies_Hz
+from designer.statics.modes import Mode, cable_frequencies_Hz, knows_inertia, platform_modes
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
 
-APART = 0.01
-"""Relative: up to which the cables' own oscillations change a frequency too little to be told."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlatformModes:
-    """Natural frequencies and shapes of the platform at one pose.
+    """Natural frequencies and shapes of platform and cables together at one pose.
 
     Parameters
     ----------
     modes : tuple of Mode
-        By frequency.
+        Those in which the platform takes part, by frequency; see `platform_modes`.
     name, load_case : str
         Of the cables, and of the load.
     place : array (6,)
         Where the platform is [m, rad].
-    string_frequency_Hz : float
-        Lowest frequency of any cable as a string between fixed ends [Hz].
-    lowest_bound_Hz : float
-        What the lowest frequency of platform and cables together is not below [Hz].
+    cable_frequency_Hz : float
+        Lowest frequency of any cable between fixed ends [Hz].
     statics : Statics
         The equilibrium about which it oscillates.
     """
@@ -49,30 +39,8 @@ class PlatformModes:
     name: str = field(metadata={"json": "cable"})
     load_case: str
     place: FloatArray = field(metadata={"json": named_place})
-    string_frequency_Hz: float
-    lowest_bound_Hz: float
+    cable_frequency_Hz: float
     statics: Statics = field(metadata={"json": None})
-
-    def excess(self, mode: Mode) -> float:
-        """Return by how much of itself a frequency is too high; see `designer.physics.inertia`."""
-        ratio = mode.frequency_Hz / self.string_frequency_Hz
-        return mode.cable_share * NEXT_TERM * ratio**2
-
-    @property
-    def couples(self) -> bool:
-        """Whether the cables' own oscillations change the lowest frequency."""
-        return self.excess(self.modes[0]) > APART
-
-    def rows(self) -> Iterator[dict[str, object]]:
-        """Yield what result files hold of each mode."""
-        for mode in self.modes:
-            excess = self.excess(mode)
-            yield {
-                "frequency_Hz": mode.frequency_Hz,
-                "shape": mode.shape,
-                "cable_share": mode.cable_share,
-                "excess": excess,
-            }
 
 
 def modes_of(analysis: Analysis) -> PlatformModes | None:
@@ -103,7 +71,7 @@ def modes_of(analysis: Analysis) -> PlatformModes | None:
 def modes_at(
     statics: Statics, body: Platform, density: FloatArray | float, name: str, load_case: str
 ) -> PlatformModes | None:
-    """Return the modes about an equilibrium (); None where there is none, or no known inertia.
+    """Return the modes about an equilibrium (); None without it, known inertia or a mode.
 
     Parameters
     ----------
@@ -119,12 +87,13 @@ def modes_at(
     if not (statics.is_solved and knows_inertia(statics.robot, body)):
         return None
     modes = platform_modes(statics, body, density)
+    if not modes:
+        return None
     return PlatformModes(
         modes=modes,
         name=name,
         load_case=load_case,
         place=statics.poses.place,
-        string_frequency_Hz=float(np.min(string_frequencies_Hz(statics, density))),
-        lowest_bound_Hz=float(lowest_bound_Hz(statics, modes[0].frequency_Hz, density)),
+        cable_frequency_Hz=float(cable_frequencies_Hz(statics, density).min()),
         statics=statics,
     )

@@ -205,7 +205,7 @@ def _qualities(analysis: Analysis) -> Json:
 
 
 def _modes(modes: PlatformModes | None) -> Json:
-    return {"modes": [] if modes is None else [*modes.rows()], "modes_at": modes}
+    return {"modes": [] if modes is None else modes.modes, "modes_at": modes}
 
 
 def _path(analysis: Analysis) -> Json | None:

@@ -10,7 +10,7 @@ from designer.analysis.analyse import Analysis
 from designer.arrays import BoolArray, FloatArray
 from designer.model.robot import Poses
 from designer.statics.inverse import Statics, solve_sagging
-from designer.statics.modes import knows_inertia, platform_frequencies_Hz
+from designer.statics.modes import frequencies_Hz, knows_inertia
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.workspace.clearance import smallest_clearance
 from designer.workspace.demand import is_left_out
@@ -56,7 +56,7 @@ def frequency_section(analysis: Analysis) -> SectionMap | None:
     if statics is None or analysis.qualities is None:
         return None
     density = analysis.qualities.cable.cable.linear_density_kg_per_m
-    lowest_Hz = platform_frequencies_Hz(statics, robot.platform, density)[..., 0]
+    lowest_Hz = frequencies_Hz(statics, robot.platform, density)
     return _section(analysis, statics, lowest_Hz, ~(lowest_Hz > 0.0))
 
 

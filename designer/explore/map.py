@@ -23,7 +23,7 @@ from designer.selection.cases import Cases, governing, searched_all, together
 from designer.selection.groups.trials import verify_groups
 from designer.selection.verify import Verification
 from designer.statics.inverse import Statics, solve_sagging
-from designer.statics.modes import platform_frequencies_Hz
+from designer.statics.modes import frequencies_Hz
 from designer.statics.shape import sag_ratio
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.workspace.demand import demand_of, in_worst_turn, is_left_out, size_worst
@@ -190,7 +190,7 @@ def _values(
     if "frequency" in keys:
         density = statics.weight_N_per_m / STANDARD_GRAVITY_M_PER_S2
         platform = question.robot.platform
-        found["frequency"] = platform_frequencies_Hz(statics, platform, density)[..., 0]
+        found["frequency"] = frequencies_Hz(statics, platform, density)
     return found
 
 

@@ -88,7 +88,7 @@ QUANTITIES = (
         "Lowest frequency",
         "Hz",
         1.0,
-        "Lowest natural frequency of the platform with the cables' share of its mass, winches "
+        "Lowest natural frequency of platform and cables together at which it takes part, winches "
         "braked. Zero where it would not stay; not known of a body whose inertia is not given.",
     ),
     Quantity(

@@ -97,7 +97,7 @@ def _fast_cabin() -> Sequence[Figure]:
     from scipy.optimize import minimize_scalar
 
     from designer.statics.inverse import solve_sagging
-    from designer.statics.modes import platform_frequencies_Hz
+    from designer.statics.modes import frequencies_Hz
 
     tilts_rad = np.radians([12.0, 16.0])
     best = minimize_scalar(
@@ -108,11 +108,11 @@ def _fast_cabin() -> Sequence[Figure]:
     radii_m = (0.0, 55.0, _RIM_M)
     lowest_Hz = np.concatenate(
         [
-            platform_frequencies_Hz(
+            frequencies_Hz(
                 solve_sagging(FAST_CABIN, _ring(r, np.radians(14.0) * r / _RIM_M), laden),
                 FAST_CABIN.platform,
                 laden.linear_density_kg_per_m,
-            )[:, 0]
+            )
             for r in radii_m
         ]
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -15,8 +16,8 @@ from designer.model.load_case import Loaded
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.statics.inverse import Statics, solve_sagging
-from designer.statics.modes import lowest_bound_Hz, platform_frequencies_Hz
-from designer.statics.shape import sag_ratio, string_frequency_Hz
+from designer.statics.modes import NEAR, TAKES_PART, frequencies_Hz
+from designer.statics.shape import sag_ratio
 from designer.statics.stiffness import (
     largest_displacement_m_per_N,
     least_eigenvalue_N_per_m,
@@ -29,8 +30,6 @@ from designer.workspace.straight import where_each_pulls_most
 
 ROUNDING = 1e-9
 """Relative: how exactly the solver keeps a limit that it chooses the internal forces by."""
-_APART = 0.02
-"""Relative: how much lower the lowest frequency with the cables' own may be before it is told."""
 _MOST_LOADS = 14
 """Of those of a load case, in which straight cables are searched: as many as inertia forces."""
 WHERE = "searched over the poses of the case"
@@ -291,7 +290,19 @@ def _of_limits(selection: Selection) -> Iterator[Criterion]:
     """Yield the limits of a selection that are asked of every equilibrium."""
     limits = selection.limits
     if limits.platform_frequency_Hz is not None:
-        yield _platform_frequency(limits.platform_frequency_Hz)
+        ends_Hz = limits.platform_frequency_Hz
+        span = "at least {:g} Hz" if len(ends_Hz) == 1 else "outside {:g} to {:g} Hz"
+        yield Criterion(
+            id="platform_frequency",
+            title="Platform frequency",
+            formula="natural frequencies of platform and cables together at which the platform has "
+            f"{TAKES_PART:.0%} of the kinetic energy or more, {span.format(*ends_Hz)}",
+            source=f"selection.limits.platform_frequency; {WHERE}",
+            unit="Hz",
+            quantity=partial(_frequency_Hz, ends_Hz, True),
+            limits=ends_Hz,
+            kind="at_least" if len(ends_Hz) == 1 else "outside",
+        )
     if limits.stiffness_N_per_m is not None:
         yield Criterion(
             id="stiffness",
@@ -309,54 +320,24 @@ def _of_limits(selection: Selection) -> Iterator[Criterion]:
         yield Criterion(
             id="excitation",
             title="Excitation",
-            formula=f"√(T/m)/2l of each cable outside {low:g} to {high:g} Hz; no overtones",
+            formula=f"natural frequencies outside {low:g} to {high:g} Hz, of cables and platform "
+            "together, overtones too; of cables alone where the platform's inertia is not given",
             source=f"selection.limits.excitation; {WHERE}",
             unit="Hz",
-            quantity=string_frequency_Hz,
+            quantity=partial(_frequency_Hz, (low, high), False),
             limits=(low, high),
             kind="outside",
         )
 
 
-def _platform_frequency(limits: tuple[float, ...]) -> Criterion:
-    """Return what is asked of the platform's natural frequencies: a least one, or no band."""
-
-    def quantity(loaded: Loaded, statics: Statics) -> FloatArray:
-        body, density = loaded.moving_body, loaded.moving_density_kg_per_m
-        frequencies = platform_frequencies_Hz(statics, body, density)
-        if len(limits) == 1:
-            return frequencies[:, :1]
-        depth = np.nan_to_num(criterion.severity(frequencies), nan=0.0)
-        return np.take_along_axis(frequencies, depth.argmax(axis=1)[:, None], axis=1)
-
-    span = f"at least {limits[0]:g} Hz" if len(limits) == 1 else "outside {:g} to {:g} Hz"
-    criterion = Criterion(
-        id="platform_frequency",
-        title="Platform frequency",
-        formula="natural frequencies of the platform, cables of fixed length that follow it as if "
-        f"at rest, {span.format(*limits)}",
-        source=f"selection.limits.platform_frequency; {WHERE}",
-        unit="Hz",
-        quantity=quantity,
-        limits=limits,
-        kind="at_least" if len(limits) == 1 else "outside",
-        detail=_cables_of_their_own,
-    )
-    return criterion
-
-
-def _cables_of_their_own(loaded: Loaded, statics: Statics) -> str:
-    """Return how much lower than the platform's lowest frequency that with the cables can be."""
+def _frequency_Hz(
+    limits: tuple[float, ...], of_platform: bool, loaded: Loaded, statics: Statics
+) -> FloatArray:
+    """Return the lowest natural frequency, or that deepest in a band (n, 1)."""
     body, density = loaded.moving_body, loaded.moving_density_kg_per_m
-    lowest = float(platform_frequencies_Hz(statics, body, density).min())
-    string = float(string_frequency_Hz(loaded, statics).min())
-    bound = float(lowest_bound_Hz(statics, lowest, density).min())
-    if bound > (1.0 - _APART) * lowest:
-        return ""
-    return (
-        f"the cables swing by themselves from {string:.3g} Hz on, so that the lowest frequency of "
-        f"all lies between {bound:.3g} and {lowest:.3g} Hz"
-    )
+    middle, near = (0.0, NEAR) if len(limits) == 1 else (math.sqrt(math.prod(limits)), math.inf)
+    figures = frequencies_Hz(statics, body, density, middle, of_platform=of_platform, near=near)
+    return figures[:, None]
 
 
 def _stiffness_N_per_m(_: Loaded, statics: Statics) -> FloatArray:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.model.load_case import Loaded
 from designer.physics import catenary
 from designer.statics.inverse import Statics
 
@@ -45,17 +44,3 @@ def stretch_m(statics: Statics) -> FloatArray:
     s = 0.5 * (1.0 + _POINTS) * length
     tension = np.hypot(force_x, force_z + weight * (s - length))
     return np.asarray((tension * _WEIGHTS).sum(axis=-1) * (0.5 * length / stiffness)[..., 0])
-
-
-def string_frequency_Hz(loaded: Loaded, statics: Statics) -> FloatArray:
-    """Return the lowest frequency of each cable as a string (..., n_cables), with ice [Hz].
-
-    sqrt(T / m) / (2 l), of the mean T of its end tensions and its free length l.
-    """
-    return string_frequencies_Hz(statics, loaded.moving_density_kg_per_m)
-
-
-def string_frequencies_Hz(statics: Statics, density_kg_per_m: FloatArray | float) -> FloatArray:
-    """Return the same of cables of this mass per length (1 or n_cables,)."""
-    mean = 0.5 * (statics.exit_tension_N + statics.platform_tension_N)
-    return np.asarray(np.sqrt(mean / density_kg_per_m) / (2.0 * statics.free_length_m))

@@ -13,10 +13,10 @@ from designer.model.robot import Poses, Robot
 from designer.model.space import named_position
 from designer.model.workspace import Workspace
 from designer.statics.inverse import solve_sagging
-from designer.statics.modes import knows_inertia, platform_frequencies_Hz
+from designer.statics.modes import NEAR, frequencies_Hz, knows_inertia
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.workspace.demand import is_counted
-from designer.workspace.refine import LIGHT, refine
+from designer.workspace.refine import LIGHT, ONE_CLIMB, refine
 
 MOST_SAMPLES, FEW_SAMPLES = 2000, 500
 """Poses that are looked at before the search between them, for a design and for each candidate."""
@@ -38,8 +38,8 @@ class StiffnessSurvey:
     softest_place, stiffest_place : array (n_coordinates,)
         Where [m, rad].
     lowest_frequency_Hz : float or None
-        Least natural frequency of the platform, see `designer.statics.modes`; None where its
-        inertia is not known [Hz].
+        Least natural frequency at which the platform takes part, see `designer.statics.modes`; None
+        where its inertia is not known [Hz].
     lowest_frequency_place : array (n_coordinates,) or None
         Where [m, rad].
     """
@@ -72,9 +72,14 @@ def survey_stiffness(
     (softest,) = refine(workspace.space, displacement, thinned)
     stiffest = int(np.where(np.isfinite(demand), demand, np.inf).argmin())
     slowest = []
-    if knows_inertia(robot, robot.platform):
-        slowness = partial(_slowness, robot, workspace, cable)
-        slowest = refine(workspace.space, slowness, thinned)
+    if knows_inertia(robot, robot.platform):  # each by itself, since a frequency takes longer
+        # With cables that follow as if at rest, which is quick; then from the 64 lowest of these.
+        following = partial(_slowness, robot, workspace, cable, 0.0)
+        (rough,) = refine(workspace.space, following, thinned)
+        lowest = thinned[np.argsort(-following(thinned))[:64]]
+        starts = np.concatenate([rough.place[None], lowest])
+        slowness = partial(_slowness, robot, workspace, cable, NEAR)
+        slowest = refine(workspace.space, slowness, starts, ONE_CLIMB)
     return StiffnessSurvey(
         samples=int((~np.isneginf(demand)).sum()),
         unstable=int(np.isposinf(demand).sum()),
@@ -124,11 +129,12 @@ def _slowness(
     robot: Robot,
     workspace: Workspace,
     cable: Cable | Cables,
+    near: float,
     places: FloatArray,
 ) -> FloatArray:
-    """Return the lowest frequency, negated (n,) [Hz]; -inf where the pose does not count."""
+    """Return the lowest of `frequencies_Hz`, negated; -inf where a pose does not count."""
     statics = solve_sagging(robot, Poses.at(places), cable)
     counts = is_counted(statics, workspace.hangs_below)
     density = cable.linear_density_kg_per_m
-    frequencies = platform_frequencies_Hz(statics, robot.platform, density)
-    return np.where(counts, -frequencies[:, 0], -np.inf)
+    lowest_Hz = frequencies_Hz(statics, robot.platform, density, near=near)
+    return np.where(counts, -lowest_Hz, -np.inf)

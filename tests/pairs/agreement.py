@@ -11,9 +11,9 @@ from pairs import options
 from pairs.quantities import (
     clearance_m,
     frequencies_Hz,
+    least_eigenvalue_N_per_m,
     least_stiffness_N_per_m,
     lowest_m,
-    platform_frequencies_Hz,
     sag_ratio,
 )
 from pairs.reference import Pose, Problem, State, feasible, hang, load_on, settle, solve
@@ -276,13 +276,13 @@ def _requirement(text, ropes, analysis: Analysis, one: Requirement) -> Iterator[
     ours = _severity(one, text)
     theirs = quantity(state, text)
     same = DIFFERENCES if one.id in ("stability", "stiffness") else SAME
-    if one.id == "platform_frequency":
+    if one.id in ("excitation", "platform_frequency"):
         same = ON_PULLEYS if "pulley_radius" in text.get("effects", {}) else ELEMENTS
     if not np.isclose(ours, theirs, rtol=same, atol=_NOTHING * (one.id in AT_NOTHING)):
         yield f"{name}: {ours:.9g}, reference {theirs:.9g} at {one.place}"
     region = case.get("region") or text["workspace"].get("region", {})
     if (
-        one.id in ("stability", "stiffness", "clearance", "platform_frequency")
+        one.id in ("stability", "stiffness", "clearance", "excitation", "platform_frequency")
         or "points" not in region
     ):
         return
@@ -408,16 +408,39 @@ def _severity(one: Requirement, text) -> float:
 
 def _excitation(state: State, text) -> float:
     low, high = text["selection"]["limits"]["excitation"]
-    frequency = frequencies_Hz(state)
+    frequency, _ = frequencies_Hz(state, text)
     return -float(np.minimum(high / frequency, frequency / low).max())
+
+
+def _of_platform(state: State, text) -> float:
+    frequencies, shares = frequencies_Hz(state, text)
+    return float(frequencies[shares >= 0.05][0])
+
+
+def _paid_out(state: State, text) -> np.ndarray:
+    """Tell which cables get longer along a path, which is a straight line from rest to rest."""
+    if "path" not in text["workspace"]:
+        return np.zeros(state.problem.n, dtype=bool)
+    first, last = np.array(options.PATHS[text["workspace"]["path"]])
+    at = state.pose.position_m
+    if min(np.linalg.norm(at - end) for end in (first, last)) < 1e-9:
+        return np.zeros(state.problem.n, dtype=bool)
+    return (state.attachment_m - state.problem.exits_m) @ (last - first) > 0.0
+
+
+def _drum_tensions_N(state: State, text) -> np.ndarray:
+    kept = kept_by_sheaves(text)
+    losses = np.where(_paid_out(state, text), kept, 1.0 / kept)
+    return np.linalg.norm(state.exit_pull_N, axis=1) * losses
 
 
 def _torque_Nm(state: State, text) -> float:
     """Return the largest torque of a motor, its rope in the outermost layer."""
     winches = text["robot"]["winches"]
     radius = 0.5 * winches["drum_diameter"] + (winches.get("layers", 1) - 0.5) * text["rope_m"]
-    pull = np.linalg.norm(state.exit_pull_N, axis=1).max() / kept_by_sheaves(text)
-    return float(pull * radius / (winches["gear_ratio"] * winches["efficiency"]))
+    efficiency = winches["efficiency"]
+    losses = np.where(_paid_out(state, text), efficiency, 1.0 / efficiency)
+    return float((_drum_tensions_N(state, text) * losses).max() * radius / winches["gear_ratio"])
 
 
 def _share_of_winch(state: State, text) -> float:
@@ -426,15 +449,15 @@ def _share_of_winch(state: State, text) -> float:
     each = largest if isinstance(largest, list) else [largest] * len(text["robot"]["anchors"])
     of_cables = [limit for cable, limit in enumerate(each, start=1) if cable != text["lost"]]
     return max(
-        float(np.linalg.norm(pull_N)) / limit / kept_by_sheaves(text)
-        for pull_N, limit in zip(state.exit_pull_N, of_cables, strict=True)
+        float(tension_N) / limit
+        for tension_N, limit in zip(_drum_tensions_N(state, text), of_cables, strict=True)
         if limit is not None
     )
 
 
 QUANTITIES = {
     "least_tension": lambda state, _: float(state.least_tension_N.min()),
-    "stability": lambda state, _: least_stiffness_N_per_m(state),
+    "stability": lambda state, _: least_eigenvalue_N_per_m(state),
     "stiffness": lambda state, _: least_stiffness_N_per_m(state),
     "sag": lambda state, _: -sag_ratio(state),
     "winch_tension": lambda state, text: -_share_of_winch(state, text),
@@ -442,7 +465,7 @@ QUANTITIES = {
     "floor": lambda state, _: lowest_m(state),
     "clearance": lambda state, _: clearance_m(state),
     "excitation": _excitation,
-    "platform_frequency": lambda state, text: float(platform_frequencies_Hz(state, text)[0]),
+    "platform_frequency": _of_platform,
 }
 AT_NOTHING = ("floor", "clearance", "least_tension")
 """What may be nothing, of which rounding leaves something."""

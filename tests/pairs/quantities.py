@@ -39,15 +39,8 @@ def least_stiffness_N_per_m(state: State) -> float:
     return np.nan if displacement is None else float(1.0 / np.linalg.norm(displacement, ord=2))
 
 
-def frequencies_Hz(state: State) -> np.ndarray:
-    """Return the lowest frequency of each cable as a string of its mean end tension."""
-    ends = np.linalg.norm(state.pull_N, axis=1), np.linalg.norm(state.exit_pull_N, axis=1)
-    speed = np.sqrt(0.5 * (ends[0] + ends[1]) / state.problem.mass_kg_per_m)
-    return speed / (2.0 * state.free_m)
-
-
-def platform_frequencies_Hz(state: State, text) -> np.ndarray:
-    """Return the natural frequencies of the platform on cables of finite elements."""
+def _on_elements(state: State, text) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+    """Stiffness and mass of the platform's freedoms and all inner nodes, and of the platform."""
     problem, turn, platform = state.problem, state.pose.rotation, text["robot"]["platform"]
     case = next(iter(text.get("load_cases", ())), {})
     mass = case.get("mass") or platform["mass"]
@@ -63,13 +56,33 @@ def platform_frequencies_Hz(state: State, text) -> np.ndarray:
         for k in range(problem.n)
     ]  # fmt: skip
     K, M = fe.assembled(body, chains)
-    if "inertia" not in platform:  # a point, whose turns mean nothing
-        free = [0, 1, 2, *range(6, len(K))]
-        K, M = K[np.ix_(free, free)], M[np.ix_(free, free)]
-    width = 6 if "inertia" in platform else 3
-    K, M = fe.condensed(K, M, width)
-    along = problem.freedoms[:, :width].T
-    return fe.frequencies_Hz(along.T @ K @ along, along.T @ M @ along)[0]
+    own, width = body.matrices(np.zeros((problem.n, 3)))[1], len(problem.freedoms)
+    along = np.zeros((width + len(K) - 6, len(K)))
+    along[:width, :6], along[width:, 6:] = problem.freedoms, np.eye(len(K) - 6)
+    own = problem.freedoms @ own @ problem.freedoms.T
+    return along @ K @ along.T, along @ M @ along.T, own, width
+
+
+def frequencies_Hz(state: State, text) -> tuple[np.ndarray, np.ndarray]:
+    """Natural frequencies of platform and cables, and the platform's shares of the energy.
+
+    Of the cables alone where the inertia of a body is not given.
+    """
+    K, M, own, width = _on_elements(state, text)
+    platform = text["robot"]["platform"]
+    if "attachments" in platform and "inertia" not in platform:
+        held = fe.frequencies_Hz(K[width:, width:], M[width:, width:])[0]
+        return held, np.zeros(len(held))
+    frequencies, shapes = fe.frequencies_Hz(K, M)
+    moved = shapes[:width]
+    return frequencies, np.einsum("ik,ij,jk->k", moved, own, moved)
+
+
+def least_eigenvalue_N_per_m(state: State) -> float:
+    """Return the lowest eigenvalue of the stiffness, turns as displacements of attachments."""
+    farthest = float(np.linalg.norm(state.problem.arms_m, axis=1).max()) or 1.0
+    displacement = compliance(state, reach_m=farthest)
+    return np.nan if displacement is None else float(1.0 / np.linalg.norm(displacement, ord=2))
 
 
 def sag_ratio(state: State) -> float:

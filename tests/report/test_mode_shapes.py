@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 from designer.analysis.analyse import Analysis
 from designer.analysis.modes import PlatformModes, modes_of
 from designer.io.config import read_study
+from designer.report import format as fmt
 from designer.report.design.drawings import Drawings
 from designer.report.figures.mode_shapes import mode_shapes
 from designer.report.figures.parts import hull_edges, hull_faces
@@ -90,7 +91,7 @@ def test_points_and_bodies_in_a_plane(
     for mode, svg in zip(found.modes, drawn, strict=True):
         rest, still, _ = (lines(p.get("d", "")) for p in ElementTree.fromstring(svg).iter("path"))
         assert np.abs(still - rest).max() > 5.0
-        assert f"{mode.frequency_Hz:.3g} Hz" in svg
+        assert f"{fmt.number(mode.frequency_Hz, 3)} Hz" in svg
         assert rest.min() >= 0.0
         assert np.all(rest.max(axis=(0, 1)) <= [160.0, 120.0])
 

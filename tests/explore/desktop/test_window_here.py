@@ -12,7 +12,7 @@ from window_driver import Driver
 import designer
 from designer.report import format as fmt
 from designer.statics.inverse import solve_sagging
-from designer.statics.modes import platform_frequencies_Hz
+from designer.statics.modes import platform_modes
 
 
 def test_the_same_numbers_as_the_command(yard: Driver) -> None:
@@ -51,9 +51,9 @@ def test_modes_move_in_a_window_of_their_own(yard: Driver) -> None:
     assert live.question is not None
     statics = solve_sagging(live.question.robot, live.question.pose, live.question.cable)
     density = live.question.cable.linear_density_kg_per_m
-    frequencies = platform_frequencies_Hz(statics, live.question.robot.platform, density)
+    modes = platform_modes(statics, live.question.robot.platform, density)
     assert [shown.chosen.itemText(k).split(": ")[1] for k in range(shown.chosen.count())] == [
-        f"{fmt.number(frequency, 3)} Hz" for frequency in frequencies.tolist()
+        f"{fmt.number(mode.frequency_Hz, 3)} Hz" for mode in modes
     ]
     shown.chosen.setCurrentIndex(2)
     first = shown.view.grab().toImage()
