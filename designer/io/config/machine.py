@@ -170,7 +170,7 @@ class WinchesSection(Section):
     load case: the same of all winches, or a list with one for each cable, in the order of the
     anchors, null for no limit."""
     speed_max: fields.RopeSpeed | None = config_field("Largest speed of a winch")
-    """Fastest that a winch hauls in or pays out, along workspace.path."""
+    """Fastest that a winch hauls in or pays out strained rope, along workspace.path."""
 
     positions: WinchPositions | None = config_field("Winch")
     """Where the cable comes from to its exit point: its winch, or the last sheave before that;

@@ -210,11 +210,11 @@ class LimitsSection(Section):
     stiffness: fields.Stiffness | None = config_field("Least stiffness")
     """Force per displacement of the platform, in any direction, cables of fixed length."""
     excitation: fields.Band | None = None
-    """Band of frequencies in which no cable shall swing as a string."""
+    """Band in which no natural frequency of cables and platform may lie, overtones too."""
     drum_capacity: fields.DrumCapacity | None = None
     """Rope that a drum takes up, beside its dead turns."""
     platform_frequency: fields.BandOrLeast | None = config_field("Frequency of the platform")
-    """Least natural frequency of the platform, or a band in which none of them may lie."""
+    """Least natural frequency at which the platform takes part, or a band without one of these."""
 
     def limits(self) -> RopeLimits:
         """Return the limits."""
