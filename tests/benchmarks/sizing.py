@@ -206,7 +206,7 @@ def costs_us(poses: int) -> dict[str, float]:
     found = {"fixed work": cost(fixed_work, 1, 9)}
     sized = {
         "3 cables": lambda p: size_poses(FAST, p, STEEL),
-        "6 cables": lambda p: size_poses(robot, p, STEEL, seeks_better=False),
+        "6 cables": lambda p: size_poses(robot, p, STEEL),
     }
     for (name, size), those in zip(sized.items(), (three, six), strict=True):
         found[name] = cost(lambda size=size, those=those: in_chunks(size, those), poses, 5)

@@ -134,9 +134,7 @@ def test_a_free_orientation_is_as_good_as_brute_force(seed: int, study_of: Study
     grid = np.stack(np.meshgrid(*np.linspace(low[:2], high[:2], 41).T), axis=-1).reshape(-1, 2)
     turns = np.column_stack([grid, np.zeros(len(grid))])
     places = np.hstack([np.repeat(positions, len(turns), axis=0), np.tile(turns, (12, 1))])
-    sizing = size_poses(
-        study.robot, Poses.at(places), study.material, seeks_better=False, is_quick=True
-    )
+    sizing = size_poses(study.robot, Poses.at(places), study.material)
     brute = np.where(sizing.statics.is_solved, sizing.diameter_m, np.inf).reshape(12, -1)
     assert (law.best(positions)[1] <= brute.min(axis=1) * 1.01).all()
     nodes = study.workspace.space.places(law.rows[0])
