@@ -189,7 +189,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("workspace.clearance", "default", "none"),
         Entry("workspace.floor", "default", "none"),
         Entry("workspace.sag", "default", "0.2"),
-        Entry("workspace.proof", "default", "20 s"),
+        Entry("workspace.proof", "default", "none"),
         Entry("workspace.orientation", "default", "none"),
         Entry("workspace.orientations", "default", "none"),
         Entry("workspace.orientation_range", "default", "none"),

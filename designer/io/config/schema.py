@@ -6,6 +6,7 @@ in ``effects`` in `designer.io.config.effects`.
 
 from __future__ import annotations
 
+from math import inf
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -157,8 +158,9 @@ class WorkspaceSection(Section):
     sag: fields.Sag = config_field("Largest sag", SAG_MAX)
     """Largest distance of a cable from its chord, over the chord, at most 50 %. With cables to
     spare, a pose in which some cable would have to sag more is not held."""
-    proof: fields.ProofTime = config_field("Time for the proof", 20.0)
-    """How long to try to prove that the chosen rope holds in all poses; 0 for not at all."""
+    proof: fields.ProofTime | None = config_field("Longest time for the proof", None)
+    """How long at most to try to prove that the chosen rope holds in all poses; 0 for not at all.
+    Left out, a number of steps ends it, so that the answer is the same on every machine."""
     orientation: regions.FollowingSection | None = None
     """How the platform is turned at every position: fixed, toward a point, or as a table has
     it."""
@@ -190,7 +192,7 @@ class WorkspaceSection(Section):
             clearance_m=self.clearance,
             floor_m=self.floor,
             sag_max=self.sag,
-            proof_s=0.0 if self.path is not None else self.proof,
+            proof_s=0.0 if self.path is not None else inf if self.proof is None else self.proof,
             orientations=orientations,
         )
 
