@@ -121,7 +121,7 @@ def test_a_rope_that_may_be_bent_is_chosen_before_a_lighter_one(solve: Solve) ->
 @pytest.mark.slow
 def test_ice_takes_a_cable_below_the_floor_in_its_load_case(solve: Solve) -> None:
     cases = "load_cases: [{name: dry}, {name: icy, ice: {thickness: 60 mm}}]\n"
-    floor = REGION.replace("samples", "floor: 1.4 m, sag: none, samples")
+    floor = REGION.replace("samples", "floor: 1.4 m, sag: 50 %, samples")
     analysis = solve(f"{CRANE}{floor}selection: {{grades: {ROPES}}}\n{cases}")
     dry, icy = of_id(analysis, "floor", "dry"), of_id(analysis, "floor", "icy")
     assert icy.capacity < dry.capacity
@@ -137,7 +137,7 @@ def test_ice_takes_a_cable_below_the_floor_in_its_load_case(solve: Solve) -> Non
 def test_clearance_is_that_of_the_region_of_its_load_case(solve: Solve) -> None:
     """Cables of a platform come nearer to each other in the region of another load case."""
     cases = "load_cases: [{name: work}, {name: parked, region: {points: [[0.7, 0.7, 10.8]]}}]\n"
-    robot = f"{BODY}workspace: {{region: {{points: [[15, 8, 6]]}}, clearance: 50 mm, sag: none}}\n"
+    robot = f"{BODY}workspace: {{region: {{points: [[15, 8, 6]]}}, clearance: 50 mm, sag: 50 %}}\n"
     analysis = solve(f"{robot}selection: {{grades: [unirope-7x19-galvanised]}}\n{cases}")
     clearances = {r.load_case: r for r in analysis.requirements if r.id == "clearance"}
     if "parked" in clearances:
