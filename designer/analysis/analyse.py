@@ -28,7 +28,7 @@ from designer.analysis.provenance import Provenance
 from designer.analysis.reactions import Reaction, reactions_of
 from designer.analysis.requirements import design_loads, requirements_of
 from designer.analysis.sensitivities import Sensitivities, group_sensitivities
-from designer.analysis.uncertainty.uncertainty import UncertaintyAnalysis, uncertainty_of
+from designer.analysis.uncertainty import UncertaintyAnalysis, uncertainty_of
 from designer.analysis.verification import SecondAnswer, second_answers
 from designer.documents.plain import lies_in
 from designer.effects.design import AsBuilt

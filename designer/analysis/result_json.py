@@ -13,7 +13,6 @@ from designer.analysis.fabrication import spooled_of
 from designer.analysis.modes import PlatformModes
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.selection_json import selection_dict
-from designer.analysis.uncertainty.uncertainty import uncertainty_dict
 from designer.documents.plain import RESULT_FORMAT, Json, lies_in, plain, record
 from designer.model.space import named_place
 from designer.model.verdict import Verdict
@@ -49,8 +48,10 @@ def result_dict(analysis: Analysis) -> Json:
             **carries_dict(
                 analysis.carries if carries else None, analysis.group_slopes if carries else ()
             ),
-            "uncertainty": uncertainty_dict(
-                analysis.uncertainty if is_read("uncertainty") else None
+            "uncertainty": (
+                analysis.uncertainty.to_dict()
+                if is_read("uncertainty") and analysis.uncertainty is not None
+                else None
             ),
             **(_modes(analysis.modes if is_read("modes") or is_read("modes_at") else None)),
             "path": _path(analysis),

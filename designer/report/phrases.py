@@ -27,7 +27,7 @@ from designer.selection.assignment import Assignment
 from designer.study import Study
 
 if TYPE_CHECKING:
-    from designer.analysis.uncertainty.uncertainty import SizeOdds, UncertaintyAnalysis
+    from designer.analysis.uncertainty import SizeOdds, UncertaintyAnalysis
     from designer.optimum.measures import Measure
 
 _MOST_LISTED = 6

@@ -10,9 +10,7 @@ import numpy as np
 import pytest
 from report_parts import Statement, cells, paragraphs, pictures, statements, tables
 
-from designer.analysis.uncertainty.poses import Checked
-from designer.analysis.uncertainty.shares import Share
-from designer.analysis.uncertainty.uncertainty import SizeOdds, UncertaintyAnalysis
+from designer.analysis.uncertainty import Checked, Share, SizeOdds, UncertaintyAnalysis
 from designer.model.uncertainty import Normal, Uncertainty, Uniform
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section

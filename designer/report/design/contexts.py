@@ -302,7 +302,7 @@ def verification(analysis: Analysis) -> Context | None:
 
 def uncertainty(analysis: Analysis) -> Context | None:
     """Probabilities and shares; None where nobody asked and no modulus is borrowed."""
-    from designer.analysis.uncertainty.shares import SCRAMBLES
+    from designer.analysis.uncertainty import SCRAMBLES
 
     survey = analysis.uncertainty
     if survey is None:
