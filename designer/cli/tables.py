@@ -14,7 +14,7 @@ from designer.cli.terminal import bare_table, show
 from designer.grades.grade import TYPICAL_LOAD_FRACTION, Grade
 from designer.grades.listing import facts
 from designer.model.load_case import STATIC
-from designer.spelling import in_runs
+from designer.spelling import in_runs, kilograms, position
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
@@ -95,12 +95,8 @@ def _summary_of_workspace(workspace: WorkspaceMap) -> Iterator[Row]:
         yield "worst pose", bad(f"none: no cable was found that serves {part} of it")
     for label, extreme in (("worst pose", workspace.sagging), ("  massless", workspace.massless)):
         if extreme is not None:
-            at = ", ".join(f"{round(x, 9) + 0.0:.4g}" for x in extreme.position_m)
-            text = f"{_extreme(extreme.diameter_m, extreme.max_tension_N)} at ({at}) m"
-            turn_deg = np.degrees(extreme.rotation_vector_rad)
-            if turn_deg.any():
-                text += f", turned by ({', '.join(f'{x:.3g}' for x in turn_deg)})°"
-            yield label, text
+            text = _extreme(extreme.diameter_m, extreme.max_tension_N)
+            yield label, f"{text} at {position(extreme.place)}"
     if workspace.massless is None and not census.is_all_left_out:
         yield "  massless", "none: straight cables do not hold every pose"
     for name, count in census.statuses.items():
@@ -134,12 +130,16 @@ def _summary_of_selection(
     for result in chosen.cases:
         if result.case is not STATIC:
             verification, cable = result.verification, result.most_used
-            at = ", ".join(f"{x:.4g}" for x in verification.worst_place[:3])
             more = f"; {escape(result.loaded.words)}" if result.loaded.words else ""
             tension = f"{verification.max_tension_N / 1e3:.4g} kN"
             used = f"{verification.utilisation:.1%}, cable {cable} with {tension}"
-            yield f"  {escape(result.case.name)}", f"{used}, at ({at}) m{more}"
-    mass = f"{chosen.cable.rope_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
+            yield (
+                f"  {escape(result.case.name)}",
+                f"{used}, at {position(verification.worst_place[:3])}{more}",
+            )
+    mass = (
+        f"{chosen.cable.rope_density_kg_per_m:.4g} kg/m, {kilograms(chosen.total_mass_kg)} in all"
+    )
     yield "  mass", mass
     if chosen.cable.attached:
         masses = (f"{line.linear_density_kg_per_m:.4g}" for line in chosen.cable.attached)
@@ -159,8 +159,7 @@ def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:
         if requirement.load_case != "all":
             labels.insert(0, f"'{requirement.load_case}'")
         if requirement.place is not None:
-            at = ", ".join(f"{x:.4g}" for x in requirement.place[:3])
-            labels.append(f"at ({at}) m")
+            labels.append(f"at {position(requirement.place[:3])}")
         words = f"{requirement.words}; {', '.join(labels)}" if labels else requirement.words
         yield f"  {requirement.title.lower()}", bad(escape(words))
 
@@ -179,9 +178,11 @@ def _summary_of_groups(choice: GroupChoice, selection: SelectionResult | None) -
     if choice.saving_kg is not None and abs(choice.saving_kg) < 1e-6:
         saving = ", as with one product for all"
     elif choice.saving_kg is not None:
-        saving = f", {abs(choice.saving_kg):.4g} kg {'less' if choice.saving_kg > 0.0 else 'more'}"
+        saving = (
+            f", {kilograms(abs(choice.saving_kg))} {'less' if choice.saving_kg > 0.0 else 'more'}"
+        )
     gap = "proved least" if choice.proof == "optimal" else f"gap {choice.gap:.2%}"
-    mass = f"{chosen.total_mass_kg:.4g} kg in all{saving}"
+    mass = f"{kilograms(chosen.total_mass_kg)} in all{saving}"
     if choice.objective == "mass":
         yield "  groups' mass", f"{mass}; {gap}"
     else:  # what is proved is told of what was minimised
