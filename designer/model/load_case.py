@@ -33,6 +33,7 @@ from designer.model.space import Orientations
 from designer.model.wrench_set import WrenchSet
 
 AIR_DENSITY_KG_PER_M3 = 1.25
+"""EN 1991-1-4, 4.5; of every wind in this program, measured or assumed [kg/m³]."""
 _SAME_DIRECTION = 1e-12
 """Between the loads of two cables: rounding."""
 FIRST_WINDS = 8

@@ -106,7 +106,7 @@ def test_wind_pushes_the_platform() -> None:
     chord = np.array(YARD3.exit_m) - scene.position_m[:, None]
     unit = chord / np.linalg.norm(chord, axis=-1, keepdims=True)
     speed = np.linalg.norm(scene.wind_m_per_s, axis=1, keepdims=True)
-    drag = 0.5 * 1.225 * 2.0 * speed * scene.wind_m_per_s
+    drag = 0.5 * 1.25 * 2.0 * speed * scene.wind_m_per_s
     held = np.einsum("rc,rci->ri", pushed - tension, unit)
     assert np.allclose(held, -drag, atol=0.02 * np.abs(drag).max())
 
