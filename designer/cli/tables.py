@@ -246,7 +246,15 @@ def figure(value: float, decimals: int) -> str:
 
 
 def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) -> None:
-    """Print the short table at the end of ``designer diagnose``."""
+    """Print the verdict, and the short table at the end of ``designer diagnose``."""
+    errors = [
+        f"{kind.name} error {kind.scale * before.heldout.value:.3g} → "
+        f"{kind.scale * after.heldout.value:.3g} {kind.unit}"
+        for kind, before, after in diagnosis.errors
+    ]
+    words = diagnosis.verdict.value.replace("nothing_to_find", "agrees").replace("_", " ")
+    answer = f"{words}: {', '.join(errors)} on unseen rows"
+    show(answer if diagnosis.is_positive else bad(answer))
     _print_rows(diagnosis.study.name, [*_found(diagnosis), *_bettered(diagnosis)])
     _print_written(folder, written)
 
@@ -268,24 +276,26 @@ def _found(diagnosis: Diagnosis) -> Iterator[Row]:
         yield f"[bold]{escape(finding.effect.key)}[/]", escape(values)
         if finding.rivals or diagnosis.has_no_rivals(finding):
             yield "  or", escape(", ".join(finding.rivals) or "none in the list")
+    if diagnosis.is_smooth:
+        yield "together", "may be one cause that goes smoothly with the place"
     if not diagnosis.findings:
         yield "effects", "none found"
-    for effect in diagnosis.not_tried:
-        yield bad("no time for"), escape(effect)
-    for event in diagnosis.structure_after.events:
-        yield bad("unexplained"), escape(f"goes with {event.text}")
-    for carrier in diagnosis.structure_after.present[:1]:
-        share = f"{carrier.fraction_of_variance:.0%} of its variance"
-        yield bad("unexplained"), escape(f"goes with {carrier.name}, {share}")
-        if place := diagnosis.left_in:
-            yield "  most in", escape(f"{place.reading}, rows {', '.join(in_runs(place.rows))}")
-    if diagnosis.is_scattered:
-        times = max(diagnosis.scatter.values())
-        yield bad("scatter"), f"{times:.2g} times the noise: more than the sensors explain"
-    for doubt in diagnosis.doubts:
-        yield bad("not plausible"), escape(doubt)
-    for gone in diagnosis.withdrawn:
-        yield "withdrawn", escape(f"{gone.effect}: {gone.reason.value}")
+    structure, place = diagnosis.structure_after, diagnosis.left_in
+    goes_with = [e.text for e in structure.events]
+    goes_with += [
+        f"{c.name}, {c.fraction_of_variance:.0%} of its variance" for c in structure.present[:1]
+    ]
+    times = f"{max(diagnosis.scatter.values(), default=0.0):.2g} times the noise"
+    for label, texts in (
+        (bad("no time for"), diagnosis.not_tried),
+        (bad("unexplained"), [f"goes with {text}" for text in goes_with]),
+        ("  most in", [f"{place.reading}, rows {', '.join(in_runs(place.rows))}"] if place else []),
+        ("  check next", diagnosis.next_checks),
+        (bad("scatter"), [f"{times}: more than the sensors explain"] * diagnosis.is_scattered),
+        (bad("not plausible"), diagnosis.doubts),
+        ("withdrawn", [f"{gone.effect}: {gone.reason.value}" for gone in diagnosis.withdrawn]),
+    ):
+        yield from ((label, escape(text)) for text in texts)
 
 
 def _bettered(diagnosis: Diagnosis) -> Iterator[Row]:
@@ -293,6 +303,8 @@ def _bettered(diagnosis: Diagnosis) -> Iterator[Row]:
     for kind, *errors in diagnosis.errors:
         was, now = (kind.scale * error.heldout.value for error in errors)
         yield f"{kind.name} error", f"{was:.3g} → {now:.3g} {kind.unit} on unseen rows"
+    if diagnosis.left_out:
+        yield "  left out", diagnosis.left_out
     for each in diagnosis.sessions:
         is_strange = each.session in diagnosis.strange_sessions
         why = f": {bad('not explained by the machine that others fit')}" * is_strange

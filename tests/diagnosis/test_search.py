@@ -16,7 +16,7 @@ from designer.diagnosis.fit import Fit, _linear_step, huber
 from designer.diagnosis.problem import Predictor, Problem
 from designer.diagnosis.search import EffectTrial, Searcher, _best
 from designer.diagnosis.statistics import heldout_rows
-from designer.effects.effect import Setting
+from designer.effects.effect import Effect, Setting
 from designer.io.config import read_study
 from designer.measured.read import read_measured
 from designer.model.measured_data import Noise
@@ -129,7 +129,31 @@ def test_a_wave_among_thousands_is_no_better_than_the_zero_of_its_winch(searcher
         return EffectTrial(effect, model, 5000.0, 0.0, heldout_gain=4000.0)
 
     zero, wave = "winch_zero of cable 1", "drum_eccentricity of cable 1"
-    (best,) = _best([trial(zero, 500.0), trial(wave, 480.0)])
+    order = searcher.candidates
+    (best,) = _best([trial(zero, 500.0), trial(wave, 480.0)], order)
     assert best.effect.key == zero
-    best, *_ = _best([trial(zero, 500.0), trial(wave, 300.0)])
+    best, *_ = _best([trial(zero, 500.0), trial(wave, 300.0)], order)
     assert best.effect.key == wave
+
+
+def test_of_laws_that_are_one_the_one_that_acts_first_is_named(searcher) -> None:
+    """A hot rope and hot winches, whichever fit ended a hair lower."""
+    by_key = {effect.key: effect for effect in searcher.candidates}
+    for losses in ((100.0, 100.1), (100.1, 100.0)):
+        trials = [
+            EffectTrial(
+                by_key[key],
+                replace(searcher.fit([]), loss=loss, inflation={key: 1.0}),
+                5000.0,
+                0.0,
+                4000.0,
+            )
+            for key, loss in zip(("thermal_expansion", "winch_expansion"), losses, strict=True)
+        ]
+        plausible = [replace(t, fit=replace(t.fit, settings=_at(t.effect))) for t in trials]
+        best, *_ = _best(sorted(plausible, key=lambda t: t.fit.loss), searcher.candidates)
+        assert best.effect.key == "thermal_expansion"
+
+
+def _at(effect: Effect) -> tuple[Setting, ...]:
+    return (Setting(effect, {"coefficient_per_K": 1e-5}),)
