@@ -79,14 +79,16 @@ def with_given_up(
         share = float(np.nansum(by_cable[off, :, worst] ** 2) / np.nansum(residual**2))
         events.append(Event(text, share, 0.0, "cable"))
     gone, wrong = is_outlier(residual), wrong_poses(residual)
+    if not (events or structure.present):  # a spread as large as all of them hides none
+        gone |= np.abs(np.nan_to_num(residual)) > _GROSS
     n_gone, n_readings = int(gone.sum()), int(np.isfinite(residual).sum())
     if n_gone > max(2, _ACCIDENTS * n_readings):
-        by = np.abs(residual[gone]).max()
-        text = (
-            f"{n_gone} of {n_readings} readings that stand off, by up to {by:.0f} times the noise"
-        )
+        by = f"{np.abs(residual[gone]).max():.0f} times the noise"
+        most = np.argmax(gone.reshape(len(gone), 2, -1).sum(axis=(0, 1))) + 1
+        where = f"cable {most} above all"
         if wrong.any():
-            text += f", of rows with wrong poses: {', '.join(in_runs(rows[wrong]))}"
+            where = f"rows with wrong poses: {', '.join(in_runs(rows[wrong]))}"
+        text = f"{n_gone} of {n_readings} readings that stand off, by up to {by}, of {where}"
         share = float(n_gone / n_readings)
         events.append(Event(text, share, 0.0, "pose" if wrong.any() else ""))
     if is_gross.any() and np.nansum(residual**2) > np.nansum(unfitted**2):

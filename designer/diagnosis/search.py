@@ -577,10 +577,11 @@ class Searcher:
     ) -> list[Effect]:
         """Replace a member by what was as good when it was added, and is better beside them all.
 
-        Or about as good, with fewer numbers.
+        Or about as good, with fewer numbers; or one that acts before it, of laws that are one.
         """
         if len(effects) == 1:
             return effects
+        place = self.candidates.index
         members = [
             (step, member)
             for step in steps
@@ -596,8 +597,11 @@ class Searcher:
                 is_as_good = trial.may_be_added and trial.score(variance) >= least
                 if member.effect in effects and is_as_good and not is_later:
                     k = effects.index(member.effect)
-                    has_fewer = len(trial.effect.parameters) < len(member.effect.parameters)
-                    margin = -RIVAL_MARGIN if has_fewer else _SAME
+                    less = len(member.effect.parameters) - len(trial.effect.parameters)
+                    is_first = place(trial.effect) < place(member.effect)
+                    margin = (
+                        -RIVAL_MARGIN if less > 0 else -_SAME if is_first and not less else _SAME
+                    )
                     effects, present = self._swapped(
                         effects, present, k, trial.effect, margin, anew=True
                     )

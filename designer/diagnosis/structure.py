@@ -359,10 +359,7 @@ def smooth_correction(
 def is_one_smooth_error(
     before: FloatArray, after: FloatArray, position_m: FloatArray, heldout: BoolArray
 ) -> bool:
-    """Tell whether readings quadratic in the position do on unseen rows what a model's effects do.
-
-    ``before`` and ``after`` (n_rows, 2 n_cables) are the residuals without and with those.
-    """
+    """Tell whether quadratics in the position do on unseen rows what effects do to a residual."""
     z = (position_m - position_m.mean(axis=0)) / np.maximum(position_m.std(axis=0), 1e-9)
     i, j = np.triu_indices(3)
     terms = np.column_stack([np.ones(len(z)), z, z[:, i] * z[:, j]])

@@ -103,14 +103,9 @@ _IN_ORDER = (
 )
 """Files of this folder, each with its ``EFFECT``, or with several, named after a dot."""
 
-
-def _effect(place: str) -> Effect:
-    file, _, name = place.partition(".")
-    effect = getattr(import_module(f"designer.effects.{file}"), name or "EFFECT")
-    assert isinstance(effect, Effect)
-    return effect
-
-
-EFFECTS: tuple[Effect, ...] = tuple(map(_effect, _IN_ORDER))
+EFFECTS: tuple[Effect, ...] = tuple(
+    getattr(import_module(f"designer.effects.{file}"), name or "EFFECT")
+    for file, _, name in (place.partition(".") for place in _IN_ORDER)
+)
 SHIPPED = KnownEffects(EFFECTS)
 """Our own effects, without those of plugins."""
