@@ -74,6 +74,7 @@ _IN_ORDER = (
     "platform_force",
     "load_step",
     "points.CENTRE",
+    "platform_force.TURNING",
     "wind_drag",
     "bending_stiffness",
     "mast_compliance",

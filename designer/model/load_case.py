@@ -304,6 +304,11 @@ class LoadCase:
         """Return the mass of a platform in this case, with what it weighs beyond its drawing."""
         return body.mass_kg if self.mass_kg is None else self.mass_kg + body.mass_offset_kg
 
+    def wrench_on(self, body: Platform, wrench_N: FloatArray | None = None) -> FloatArray:
+        """Return force and moment (6,) on it, likewise, or under one of the set [N, N·m]."""
+        given = self.wrench_N if wrench_N is None else wrench_N
+        return body.wrench_N if given is None else given + body.wrench_offset_N
+
     def under(
         self,
         robot: Robot,
@@ -319,8 +324,7 @@ class LoadCase:
         """
         bare, body, factor = (robot, cable), robot.platform, self.dynamic_factor
         mass = self.mass_on(body)
-        given = self.wrench_N if wrench_N is None else wrench_N
-        wrench = factor * (body.wrench_N if given is None else given)
+        wrench = factor * self.wrench_on(body, wrench_N)
         centre, drag = body.centre_force_N, body.drag_force_N
         if inertia is not None:
             centre = centre + mass * self.acceleration_m_per_s2 * inertia

@@ -84,6 +84,13 @@ def _hose(machine: Machine, scene: Scene, size: float, drawn: dict) -> Machine:
     return _force(machine, size * (drawn["level"] + [0.0, 0.0, -0.3])[None])
 
 
+def _hose_at_the_rim(machine: Machine, scene: Scene, size: float, drawn: dict) -> Machine:
+    """A hose that is held beside the platform's origin: it turns the platform as well."""
+    pulled = _hose(machine, scene, size, drawn)
+    arm_m = np.ptp(machine.attachment_m, axis=0).max() * (drawn["level"][[1, 0, 2]] + [0, 0, 0.3])
+    return replace(pulled, moment_Nm=np.cross(arm_m, pulled.force_N))
+
+
 def _hanging_hose(machine: Machine, scene: Scene, size: float, drawn: dict) -> Machine:
     """A hose from the floor: the higher the platform, the more of it hangs there."""
     height = scene.position_m[:, 2] - scene.position_m[:, 2].min()
@@ -268,7 +275,8 @@ def _beside_the_point(position, scene, size, drawn):
 
 
 MACHINES: dict[str, OnMachine] = {
-    "hose": _hose, "hanging hose": _hanging_hose, "spring": _spring, "tether": _tether,
+    "hose": _hose, "hose at the rim": _hose_at_the_rim, "hanging hose": _hanging_hose,
+    "spring": _spring, "tether": _tether,
     "wind of the day": _wind_of_the_day, "gusty": _gusty, "fuel": _fuel,
     "leaning": _leaning,
     "warm masts": _warm_masts, "swaying mast": _swaying_mast, "drying": _drying,
@@ -286,7 +294,8 @@ POSES: dict[str, OnPoses] = {
 KINDS = (*MACHINES, *READINGS, *POSES)
 UNSIZED = ("exchanged", "stale", "wrong poses")
 NEAR = {
-    "hose": {"platform_force"}, "gusty": {"platform_force"}, "hot drum": {"winch_expansion"},
+    "hose": {"platform_force"}, "hose at the rim": {"platform_force", "platform_moment"},
+    "gusty": {"platform_force"}, "hot drum": {"winch_expansion"},
     "refraction": {"pose_distortion"}, "beside the point": {"tool_point"},
 }  # fmt: skip
 """What is in the list of effects by now."""

@@ -49,6 +49,14 @@ def test_a_hose_is_a_force_or_the_rival_of_a_tilt_and_a_mass(robot, seed, capsys
 
 
 @pytest.mark.slow
+def test_a_hose_beside_the_origin_is_a_moment_and_no_moved_centre_of_mass() -> None:
+    names = told(found_in("hall6", "hose at the rim", 2))
+    assert "platform_moment" in names
+    assert "centre_of_mass_offset" not in names
+    assert all("platform_force" in rivals for rivals in names.values())
+
+
+@pytest.mark.slow
 def test_a_wind_whose_gusts_grow_is_no_tilt() -> None:
     found = found_in("plaza4", "gusty", 2)
     assert list(told(found)) == ["platform_force"]

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from designer.analysis.sensitivities import payload_scaled
 from designer.diagnosis.problem import readings_of as foretold
 from designer.effects.backlash import direction_of, dragged_m
 from designer.effects.effect import Effect, Readings, frame_size_m
@@ -19,6 +20,7 @@ from designer.model.load_case import LoadCase, Wind
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.model.robot import Platform, Poses, Robot
+from designer.model.wrench_set import WrenchSet
 from designer.statics.inverse import solve_sagging
 
 CABLE = Cable(0.01, 0.4, 5e6, 12e3)
@@ -350,6 +352,26 @@ def test_a_constant_force_is_one_that_no_load_case_replaces(machine):
     flat = replace(machine.robot, exit_points_m=EXIT_POINTS_M * [1.0, 0.0, 1.0], is_planar=True)
     names = [p.name for p in effect_of(replace(machine, robot=flat), "platform_force").parameters]
     assert names == ["x_N", "z_N"]
+
+
+def test_a_constant_moment_stays_beside_the_wrench_of_a_load_case(machine, six_cable_robot):
+    body = Machine(six_cable_robot, CABLE)
+    turned = machine_with(body, "platform_moment", x_Nm=4.0, z_Nm=-7.0).robot
+    assert turned.pull_N - six_cable_robot.pull_N == pytest.approx([0, 0, 0, -4, 0, 7])
+    several = WrenchSet(np.array([[0.0, 100.0, 0.0, 1.0, 0.0, 0.0]]))
+    own = several.wrenches_N[0]
+    for case in (LoadCase("own", wrench_N=own), LoadCase("set", wrench_set=several)):
+        (loaded,) = case.on(turned, CABLE)
+        assert loaded.robot.platform.wrench_N == pytest.approx([0, 100, 0, 5, 0, -7])
+        # Twice the payload is twice all that acts, the moment counted once.
+        twice = payload_scaled(loaded, 2.0)
+        (twice,) = twice.case.on(*twice.bare)
+        assert twice.robot.platform.wrench_N == pytest.approx([0, 200, 0, 10, 0, -14])
+    assert not any(effect.id == "platform_moment" for effect in SHIPPED.of(machine))
+    flat = machine.robot.exit_points_m * [1.0, 0.0, 1.0]
+    planar = replace(six_cable_robot, exit_points_m=np.tile(flat, (2, 1)), is_planar=True)
+    (about,) = effect_of(replace(body, robot=planar), "platform_moment").parameters
+    assert about.name == "y_Nm"
 
 
 def test_wind_that_is_measured_pushes_as_that_of_a_load_case_does(machine, measured):

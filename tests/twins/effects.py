@@ -208,6 +208,10 @@ def _platform_force(machine: Machine, scene: Scene, p: Parameters) -> Machine:
     return replace(machine, force_N=machine.force_N + np.array([p[f"{a}_N"] for a in "xyz"]))
 
 
+def _platform_moment(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    return replace(machine, moment_Nm=machine.moment_Nm + [p[f"{a}_Nm"] for a in "xyz"])
+
+
 def _bending_stiffness(machine: Machine, scene: Scene, p: Parameters) -> Machine:
     return replace(machine, bending_N_m2=_each(machine, p["flexural_rigidity_N_m2"]))
 
@@ -259,6 +263,7 @@ MACHINE: dict[str, Callable[[Machine, Scene, Parameters], Machine]] = {
     "wind_drag": _wind_drag,
     "base_tilt": _base_tilt,
     "platform_force": _platform_force,
+    "platform_moment": _platform_moment,
     "bending_stiffness": _bending_stiffness,
     "tower_settles": _tower_settles,
     "mast_compliance": _mast_compliance,
