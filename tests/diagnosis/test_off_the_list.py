@@ -16,7 +16,7 @@ from twins.dataset import make
 from twins.robots import FAST3, YARD3
 
 from designer.cli.tables import print_diagnosis
-from designer.diagnosis.hold import Reason, _unsteady
+from designer.diagnosis.hold import Reason, Withdrawn, _unsteady
 from designer.diagnosis.result import Diagnosis, DiagnosisVerdict
 from designer.diagnosis.structure import Event, is_one_smooth_error
 
@@ -73,11 +73,14 @@ def test_a_tilt_gives_way_to_a_force_where_rows_are_unsteady() -> None:
             found=(tilt,),
             structure=SimpleNamespace(events=events),
             searcher=SimpleNamespace(candidates=[tilt, force]),
+            withdrawn=(),
         )
         withdrawn = _unsteady(outcome)
         assert (withdrawn is not None) == is_withdrawn
         if withdrawn is not None:
             assert withdrawn.instead == (force,)
+        outcome.withdrawn = (Withdrawn("platform_force", reason=Reason.UNSEEN),)
+        assert _unsteady(outcome) is None  # else it would be told as withdrawn and as found
 
 
 @pytest.mark.slow
