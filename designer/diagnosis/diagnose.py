@@ -150,6 +150,7 @@ def _told(
     findings = tuple(
         _finding(outcome, e, gains[e.key], rivals[e.key] | shared) for e in outcome.found
     )
+    findings = _with_one_force(findings)
     structure = with_given_up(outcome.structure, after, problem.residual(()), measured.row_numbers)
     trend = correction = None
     if structure.present:
@@ -215,6 +216,18 @@ def _with_settled_noise(case: Case, rows: BoolArray, progress: Pace) -> Outcome:
             break
     assert outcome is not None
     return outcome
+
+
+def _with_one_force(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    """Return several findings with a force as rival of all, if it is of all but the ropes' mass.
+
+    One that changes with the place: a constant one does what most of them do, and heavier ropes
+    pull the more, the farther away the platform is.
+    """
+    others = {finding.effect.id for finding in findings if FORCE.id not in finding.rivals}
+    if len(findings) < 3 or others != {"linear_mass"}:
+        return findings
+    return tuple(replace(f, rivals=tuple(dict.fromkeys([*f.rivals, FORCE.id]))) for f in findings)
 
 
 def _rivals(outcome: Outcome, effect: Effect) -> dict[str, tuple[Effect, ...]]:

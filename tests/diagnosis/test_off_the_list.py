@@ -16,9 +16,11 @@ from twins.dataset import make
 from twins.robots import FAST3, YARD3
 
 from designer.cli.tables import print_diagnosis
+from designer.diagnosis.diagnose import _with_one_force
 from designer.diagnosis.hold import Reason, Withdrawn, _unsteady
-from designer.diagnosis.result import Diagnosis, DiagnosisVerdict
+from designer.diagnosis.result import Diagnosis, DiagnosisVerdict, Finding
 from designer.diagnosis.structure import Event, is_one_smooth_error
+from designer.effects.registry import SHIPPED
 
 
 @cache
@@ -162,11 +164,30 @@ def test_zeros_of_all_cells_that_are_alike_have_a_force_as_rival() -> None:
 
 
 @pytest.mark.slow
-def test_three_effects_bent_to_one_force_have_it_as_rival(capsys) -> None:
-    found = found_in("plaza4", "tether", 15)
+@pytest.mark.parametrize("seed", [15, 433])
+def test_three_effects_bent_to_one_force_have_it_as_rival(seed, capsys) -> None:
+    found = found_in("plaza4", "tether", seed)
     assert len(found.findings) == 3
     assert all("platform_force" in rivals for rivals in told(found).values())
     assert "one cause that goes smoothly with the place" in first_line(found, capsys)[1]
+
+
+@pytest.mark.parametrize(
+    ("third", "is_one"), [("linear_mass", True), ("drum_scale", False), ("anchor_offset", False)]
+)
+def test_a_force_and_heavier_ropes_may_be_a_force_that_changes_with_the_place(
+    third, is_one
+) -> None:
+    findings = tuple(
+        Finding(SHIPPED.by_id[key], {}, rivals, 0.5, 0.1, ())
+        for key, rivals in (
+            ("base_tilt", ("platform_force",)),
+            ("tension_bias", ("platform_force",)),
+            (third, ()),
+        )
+    )
+    assert _with_one_force(findings)[2].rivals == (("platform_force",) if is_one else ())
+    assert _with_one_force(findings[1:])[1].rivals == ()  # two are two
 
 
 def test_one_smooth_error_is_told_from_one_that_goes_with_nothing() -> None:
