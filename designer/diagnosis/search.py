@@ -608,13 +608,17 @@ class Searcher:
         return effects
 
     def _parted(self, effects: list[Effect], present: Fit) -> list[Effect]:
-        """Name the parts of a member in its place, if they do about as well together."""
+        """Name the parts of a member in its place, if they do about as well together.
+
+        Where they do better, also with values that are not plausible: then it is none of them.
+        """
         for member in list(effects):
             parts = [e for e in self._others(effects) if e.id in member.parts]
             several = [*without(effects, member.key), *parts]
             model = self.fit(several, present, anew=True) if parts else present
             loss = (self._penalised(model) - self._penalised(present)) / present.variance
-            if parts and loss < RIVAL_MARGIN and all(map(model.is_plausible, parts)):
+            most = RIVAL_MARGIN if all(map(model.is_plausible, parts)) else -RIVAL_MARGIN
+            if parts and loss < most:
                 effects, present = self._pruned(several), model
         return effects
 
