@@ -78,18 +78,18 @@ def with_given_up(
         )
         share = float(np.nansum(by_cable[off, :, worst] ** 2) / np.nansum(residual**2))
         events.append(Event(text, share, 0.0, "cable"))
-    gone, wrong = is_outlier(residual), wrong_poses(residual)
+    outliers, wrong = is_outlier(residual), wrong_poses(residual)
     if not (events or structure.present):  # a spread as large as all of them hides none
-        gone |= np.abs(np.nan_to_num(residual)) > _GROSS
-    n_gone, n_readings = int(gone.sum()), int(np.isfinite(residual).sum())
-    if n_gone > max(2, _ACCIDENTS * n_readings):
-        by = f"{np.abs(residual[gone]).max():.0f} times the noise"
-        most = np.argmax(gone.reshape(len(gone), 2, -1).sum(axis=(0, 1))) + 1
-        where = f"cable {most} above all"
+        outliers |= np.abs(np.nan_to_num(residual)) > _GROSS
+    n_outliers, n_readings = int(outliers.sum()), int(np.isfinite(residual).sum())
+    if n_outliers > max(2, _ACCIDENTS * n_readings):
+        by = f"{np.abs(residual[outliers]).max():.0f} times the noise"
+        cable = np.argmax(outliers.reshape(len(outliers), 2, -1).sum(axis=(0, 1))) + 1
+        where = f"cable {cable} above all"
         if wrong.any():
             where = f"rows with wrong poses: {', '.join(in_runs(rows[wrong]))}"
-        text = f"{n_gone} of {n_readings} readings that stand off, by up to {by}, of {where}"
-        share = float(n_gone / n_readings)
+        text = f"{n_outliers} of {n_readings} readings that stand off, by up to {by}, of {where}"
+        share = float(n_outliers / n_readings)
         events.append(Event(text, share, 0.0, "pose" if wrong.any() else ""))
     if is_gross.any() and np.nansum(residual**2) > np.nansum(unfitted**2):
         text = "readings that stand off: counted in full, all that was fitted helps nothing"
@@ -102,9 +102,9 @@ def wrong_poses(residual: FloatArray) -> BoolArray:
 
     By more than half of the lengths, where those were measured: all cells feel a load as well.
     """
-    both = np.stack([is_outlier(residual), np.isfinite(residual)]).reshape(2, len(residual), 2, -1)
-    is_off, is_read = np.asarray(both.any(axis=2))
-    lengths_off, lengths_read = both[:, :, 0].sum(axis=-1)
+    flags = np.stack([is_outlier(residual), np.isfinite(residual)]).reshape(2, len(residual), 2, -1)
+    is_off, is_read = np.asarray(flags.any(axis=2))
+    lengths_off, lengths_read = flags[:, :, 0].sum(axis=-1)
     has_all = (is_off == is_read).all(axis=1) & (is_read.sum(axis=1) > 1)
     return np.asarray(has_all & ((2 * lengths_off > lengths_read) | (lengths_read == 0)))
 

@@ -333,8 +333,8 @@ def _bent(outcome: Outcome) -> Withdrawn | None:
 
 def _unsteady(outcome: Outcome) -> Withdrawn | None:
     """Return a tilt, if what is left scatters more as the rows go on: a wind does, no base."""
-    gone = [withdrawn.effect for withdrawn in outcome.withdrawn]
-    force = tuple(e for e in without(outcome.searcher.candidates, *gone) if e.id == FORCE.id)
+    withdrawn = [each.effect for each in outcome.withdrawn]
+    force = tuple(e for e in without(outcome.searcher.candidates, *withdrawn) if e.id == FORCE.id)
     is_found = "base_tilt" in [effect.key for effect in outcome.found]
     is_unsteady = any(event.place == "scatter" for event in outcome.structure.events)
     if not (is_found and is_unsteady and force):

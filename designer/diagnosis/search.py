@@ -617,8 +617,8 @@ class Searcher:
             several = [*without(effects, member.key), *parts]
             model = self.fit(several, present, anew=True) if parts else present
             loss = (self._penalised(model) - self._penalised(present)) / present.variance
-            most = RIVAL_MARGIN if all(map(model.is_plausible, parts)) else -RIVAL_MARGIN
-            if parts and loss < most:
+            margin = RIVAL_MARGIN if all(map(model.is_plausible, parts)) else -RIVAL_MARGIN
+            if parts and loss < margin:
                 effects, present = self._pruned(several), model
         return effects
 

@@ -364,13 +364,13 @@ def is_one_smooth_error(
     i, j = np.triu_indices(3)
     terms = np.column_stack([np.ones(len(z)), z, z[:, i] * z[:, j]])
     is_sound = np.isfinite(without_outliers(after))
-    left = np.where(is_sound, before, np.nan)
-    for k in range(left.shape[1]):
+    remainder = np.where(is_sound, before, np.nan)
+    for k in range(remainder.shape[1]):
         seen = is_sound[:, k] & ~heldout
         if seen.sum() > 2 * terms.shape[1]:
-            left[:, k] -= terms @ np.linalg.lstsq(terms[seen], left[seen, k])[0]
+            remainder[:, k] -= terms @ np.linalg.lstsq(terms[seen], remainder[seen, k])[0]
     unseen = is_sound & heldout[:, None]
-    return rms(left[unseen]) < _AS_GOOD * rms(after[unseen])
+    return rms(remainder[unseen]) < _AS_GOOD * rms(after[unseen])
 
 
 def strongest_channel(residual: FloatArray, covariate: FloatArray) -> int:

@@ -28,8 +28,8 @@ def _change(machine: Machine, values: Values) -> Machine:
 
 def _size(machine: Machine) -> Size:
     """A hose or a wind that pulls with more than a seventh of the weight would be known."""
-    weight, most = machine.robot.weight_N, 0.15 * machine.robot.weight_N
-    return Size(0.01 * weight, bounds=(-10 * weight, 10 * weight), plausible=(-most, most))
+    weight, limit = machine.robot.weight_N, 0.15 * machine.robot.weight_N
+    return Size(0.01 * weight, bounds=(-10 * weight, 10 * weight), plausible=(-limit, limit))
 
 
 def _size_of_moment(machine: Machine) -> Size:

@@ -306,8 +306,8 @@ class LoadCase:
 
     def wrench_on(self, body: Platform, wrench_N: FloatArray | None = None) -> FloatArray:
         """Return force and moment (6,) on it, likewise, or under one of the set [N, N·m]."""
-        given = self.wrench_N if wrench_N is None else wrench_N
-        return body.wrench_N if given is None else given + body.wrench_offset_N
+        wrench = self.wrench_N if wrench_N is None else wrench_N
+        return body.wrench_N if wrench is None else wrench + body.wrench_offset_N
 
     def under(
         self,
