@@ -43,7 +43,7 @@ def result_dict(analysis: Analysis) -> Json:
             "inputs": {entry.field: entry.value_SI for entry in study.source.entries},
             "pose": _pose(study, analysis.pose, is_read("pose.rest")),
             "workspace": _workspace(analysis),
-            "selection": selection_dict(selection, analysis.groups),
+            "selection": selection_dict(selection, analysis.groups, analysis.own_material),
             **load_cases_dict(analysis),
             **carries_dict(
                 analysis.carries if carries else None, analysis.group_slopes if carries else ()
@@ -115,7 +115,8 @@ def _answer(analysis: Analysis) -> Json:
         {"id": requirement.id, "load_case": requirement.load_case, "state": requirement.state.value}
         for requirement in analysis.unmet
     ]
-    return {"verdict": analysis.answer.value, "reasons": reasons, **_products(analysis)}
+    terms = {"subject_to": analysis.terms.subject_to, "not_asked": analysis.terms.not_asked}
+    return {"verdict": analysis.answer.value, "reasons": reasons, **terms, **_products(analysis)}
 
 
 def _products(analysis: Analysis) -> Json:

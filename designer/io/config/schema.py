@@ -29,6 +29,7 @@ from designer.io.config import regions
 from designer.io.config.columns import Columns
 from designer.io.config.machine import ConfiguredCable, LoadCaseSection, RobotSection
 from designer.io.config.uncertainty import UncertaintySection
+from designer.model.cable import MaterialName, Trust
 from designer.model.duty import RUNNING_ROPE, DutyClass
 from designer.model.measurements import LogColumn, LogSession, Measurements, Reading
 from designer.model.motion import Ends
@@ -45,6 +46,11 @@ _GRADES = "'all' or a list of grade ids"
 Objectives = Annotated[
     tuple[Objective, ...],
     fields.list_of(1, 5, "a list of objectives such as [mass, drum_diameter]"),
+    AfterValidator(fields.different),
+]
+Materials = Annotated[
+    tuple[MaterialName, ...],
+    fields.list_of(1, 20, "a list of materials such as [steel, stainless]"),
     AfterValidator(fields.different),
 ]
 Readings = Annotated[
@@ -268,6 +274,11 @@ class SelectionSection(Section):
 
     grades: GradeIds = "all"
     """Grades to choose among: all, or a list of ids from `designer catalog list`."""
+    trust: Trust = config_field("Least trust", "B")
+    """Lowest trust of a grade that is tried unless `grades` or `prices` name it: A, a maker's or
+    standard's own table, B, a seller's transcript, C, third hand; a doubted size counts as C."""
+    materials: Materials | None = None
+    """Materials to choose among; all if left out."""
     safety_factor: fields.SafetyFactor = 5.0
     """What is left of the minimum breaking load, over the allowable tension."""
     duty_class: DutyClass = config_field("Duty class", "none")
@@ -320,6 +331,8 @@ class SelectionSection(Section):
             limits=self.limits.limits(),
             rope_life=None if self.rope_life is None else self.rope_life.rope_life(),
             price_list=price_list,
+            trust=self.trust,
+            materials=self.materials or (),
         )
 
 
