@@ -57,6 +57,16 @@ class Condition:
     neighbours: tuple[str, ...] = ()
     by_neighbours: float = math.nan
 
+    @property
+    def sentences(self) -> str:
+        """Why, and what the neighbours say."""
+        words = f"{self.why[:1].upper()}{self.why[1:]}."
+        if not self.neighbours:
+            return words
+        beside = f"as strong and as heavy over d² as {' and '.join(self.neighbours)} beside it"
+        excess = ", which is too much" if self.by_neighbours > 1.0 else ""
+        return f"{words} Were it {beside}, it would be used to {self.by_neighbours:.1%}{excess}."
+
 
 @dataclass(frozen=True, slots=True)
 class Terms:
@@ -73,6 +83,12 @@ class Terms:
         certificates = " and ".join(condition.what for condition in self.subject_to)
         subject = f", subject to {certificates}" if certificates else ""
         return f"Yes{subject}, for {self.covers}"
+
+    def omissions(self, answer: Answer) -> str:
+        """Return the sentence of what a yes does not cover; nothing for another answer."""
+        if answer is not Answer.YES or not self.not_asked:
+            return ""
+        return f"Not asked: {', '.join(self.not_asked)}."
 
 
 _FAMILY = "a cable of the configured family holds"

@@ -115,8 +115,14 @@ def _answer(analysis: Analysis) -> Json:
         {"id": requirement.id, "load_case": requirement.load_case, "state": requirement.state.value}
         for requirement in analysis.unmet
     ]
-    terms = {"subject_to": analysis.terms.subject_to, "not_asked": analysis.terms.not_asked}
-    return {"verdict": analysis.answer.value, "reasons": reasons, **terms, **_products(analysis)}
+    return {
+        "verdict": analysis.answer.value,
+        "covers": analysis.terms.covers,
+        "not_asked": analysis.terms.not_asked,
+        "subject_to": analysis.terms.subject_to,
+        "reasons": reasons,
+        **_products(analysis),
+    }
 
 
 def _products(analysis: Analysis) -> Json:

@@ -151,9 +151,13 @@ def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:
     interference = None if analysis.qualities is None else analysis.qualities.interference
     if interference is not None and interference.worst is None:
         yield "clearance", "nothing to compare: all cables meet at the platform"
-    answer = analysis.answer.value
-    count = len(analysis.requirements)
-    yield "[bold]answer[/]", f"[bold]{answer}[/], {count - len(analysis.unmet)} of {count} hold"
+    terms, answer, count = analysis.terms, analysis.answer, len(analysis.requirements)
+    head = f"[bold{' yellow' if terms.subject_to else ''}]{escape(terms.head(answer))}[/]"
+    yield "[bold]answer[/]", f"{head}; {count - len(analysis.unmet)} of {count} hold"
+    if omissions := terms.omissions(answer):
+        yield "", escape(omissions)
+    for condition in terms.subject_to:
+        yield "  subject to", escape(f"{condition.what}. {condition.sentences}")
     for requirement in analysis.unmet:
         labels = [] if requirement.cable is None else [f"cable {requirement.cable}"]
         if requirement.load_case != "all":
