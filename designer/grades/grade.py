@@ -257,7 +257,7 @@ class Grade(GradeSheet):
     @property
     def maker(self) -> str | None:
         """Who makes it; None where its source names nobody."""
-        return None if _NO_MAKER.match(self.manufacturer) else self.manufacturer
+        return None if _NO_MAKER.match(self.manufacturer) else self.manufacturer.split(" (")[0]
 
     @property
     def material_name(self) -> str:
