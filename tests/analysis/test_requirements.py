@@ -12,6 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from designer.analysis.analyse import Analysis
+from designer.analysis.requirements import Terms
 from designer.cli.commands import app
 from designer.cli.tables import _summary_of_requirements
 from designer.grades.registry import load_catalogue
@@ -190,7 +191,7 @@ def test_the_terminal_names_what_fails_its_cable_and_its_place() -> None:
     )  # fmt: skip
     analysis = SimpleNamespace(
         qualities=None, answer=Answer.NO, requirements=[requirement(State.HOLDS), failing],
-        unmet=[failing],
+        unmet=[failing], terms=Terms("one static case", ()),
     )  # fmt: skip
     answer, told = _summary_of_requirements(cast(Analysis, analysis))
     assert answer[1].endswith("1 of 2 hold")
