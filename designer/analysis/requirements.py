@@ -130,15 +130,14 @@ def terms_of(analysis: Analysis) -> Terms:
         covers = "one load case" if len(cases) == 1 else f"{len(cases)} load cases"
     elif moves or study.workspace is None:
         covers = "the motion along the path" if moves else "one pose at rest"
-    has_subject = analysis.answer is Answer.YES
-    subject_to = tuple(_conditions(analysis)) if has_subject else ()
+    subject_to = tuple(_conditions(analysis)) if analysis.answer is Answer.YES else ()
     return Terms(covers, tuple(_not_asked(study, moves)), subject_to)
 
 
 def _not_asked(study: Study, moves: bool) -> Iterator[str]:
     """Yield which loads and losses of strength a study says nothing of."""
     cases, selection = study.load_cases, study.selection
-    is_given = {entry.field for entry in study.source.entries if entry.given != "default"}
+    given = {entry.field for entry in study.source.entries if entry.given != "default"}
     loads = {
         "wind": any(case.wind is not None for case in cases),
         "dynamics": moves
@@ -151,7 +150,7 @@ def _not_asked(study: Study, moves: bool) -> Iterator[str]:
     if selection is None:
         return
     shares = {selection.termination_efficiency, *(case.termination_efficiency for case in cases)}
-    if "selection.termination_efficiency" not in is_given and shares <= {None, 1.0}:
+    if "selection.termination_efficiency" not in given and shares <= {None, 1.0}:
         yield "end fittings"
     if selection.sheave_diameter_m is None and study.robot.winches.reeving_efficiency == 1.0:
         yield "sheaves"
@@ -173,7 +172,7 @@ def _conditions(analysis: Analysis) -> Iterator[Condition]:
         if undecided and elasticity.basis == "borrowed":
             within = f"borrowed, known to ±{elasticity.uncertainty:.0%}"
             titles = ", ".join(title.lower() for title in undecided)
-            reasons.append(f"its modulus is {within}, in which not all of it meets: {titles}")
+            reasons.append(f"its modulus is {within}: at an end of that this fails: {titles}")
             certified.append("modulus")
         if reasons:
             alone = not analysis.assignment.has_groups

@@ -20,18 +20,9 @@ STEEL_EXPANSION_PER_K = 12e-6
 Trust = Literal["A", "B", "C"]
 """How far the figures of a rope are to be trusted: a maker's own, a seller's, third hand."""
 MaterialName = Literal[
-    "steel",
-    "stainless",
-    "hmpe",
-    "vectran",
-    "pbo",
-    "aramid",
-    "polyester",
-    "nylon",
-    "polyester and nylon",
-    "polypropylene",
-    "other",
-]
+    "steel", "stainless", "hmpe", "vectran", "pbo", "aramid", "polyester", "nylon",
+    "polyester and nylon", "polypropylene", "other",
+]  # fmt: skip
 """What a rope bears its load with, as a study names it."""
 Unlimited = Annotated[float, checked.Number(above=0.0, finite=False)]
 """A figure that may be ``inf``."""

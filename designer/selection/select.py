@@ -205,10 +205,15 @@ class _SelectionRun:
     def better_untrusted(self, grades: Sequence[Grade], chosen: Candidate) -> Candidate | None:
         """Return the best of what is excluded for its trust alone; None unless it is better."""
         trusting, decides = replace(self.selection, trust="C"), self.selection.objectives[0]
+
+        def lacks_trust(grade: Grade, size: Size) -> bool:
+            excluded, anyway = (grade.why_excluded(s, size) for s in (self.selection, trusting))
+            return excluded is not None and anyway is None
+
         trimmed = [
             replace(grade, sizes=sizes)
             for grade in grades
-            if (sizes := tuple(s for s in grade.sizes if self._lacks_trust(grade, s, trusting)))
+            if (sizes := tuple(size for size in grade.sizes if lacks_trust(grade, size)))
         ]
         if not trimmed:
             return None
@@ -217,10 +222,6 @@ class _SelectionRun:
         best = next((c for c in front[:1] if c.rejected_by is None), None)
         is_better = best and best.figures.burden(decides) < chosen.figures.burden(decides)
         return best if is_better else None
-
-    def _lacks_trust(self, grade: Grade, size: Size, trusting: Selection) -> bool:
-        is_excluded = grade.why_excluded(self.selection, size) is not None
-        return is_excluded and grade.why_excluded(trusting, size) is None
 
     def _continuous_optima(
         self, grades: Sequence[tuple[Grade, Sequence[Candidate]]]
