@@ -16,7 +16,7 @@ from designer.units import FORCE, MOMENT
 
 def _change(machine: Machine, values: Values) -> Machine:
     platform = machine.robot.platform
-    names = [f"{axis}_{unit}" for unit in ("N", "Nm") for axis in "xyz"]
+    names = [f"{axis}_{unit}" for unit in ("N", "N_m") for axis in "xyz"]
     more_N = np.array([values.get(name, 0.0) for name in names])
     platform = replace(
         platform,
@@ -66,7 +66,7 @@ TURNING = replace(
     law="moment on the platform, about the axes of the world frame",
     parameters=tuple(
         Parameter(
-            f"{name}_Nm",
+            f"{name}_N_m",
             MOMENT,
             _size_of_moment,
             is_optional=True,

@@ -356,7 +356,7 @@ def test_a_constant_force_is_one_that_no_load_case_replaces(machine):
 
 def test_a_constant_moment_stays_beside_the_wrench_of_a_load_case(machine, six_cable_robot):
     body = Machine(six_cable_robot, CABLE)
-    turned = machine_with(body, "platform_moment", x_Nm=4.0, z_Nm=-7.0).robot
+    turned = machine_with(body, "platform_moment", x_N_m=4.0, z_N_m=-7.0).robot
     assert turned.pull_N - six_cable_robot.pull_N == pytest.approx([0, 0, 0, -4, 0, 7])
     several = WrenchSet(np.array([[0.0, 100.0, 0.0, 1.0, 0.0, 0.0]]))
     own = several.wrenches_N[0]
@@ -371,7 +371,7 @@ def test_a_constant_moment_stays_beside_the_wrench_of_a_load_case(machine, six_c
     flat = machine.robot.exit_points_m * [1.0, 0.0, 1.0]
     planar = replace(six_cable_robot, exit_points_m=np.tile(flat, (2, 1)), is_planar=True)
     (about,) = effect_of(replace(body, robot=planar), "platform_moment").parameters
-    assert about.name == "y_Nm"
+    assert about.name == "y_N_m"
 
 
 def test_wind_that_is_measured_pushes_as_that_of_a_load_case_does(machine, measured):
