@@ -119,6 +119,14 @@ def _extreme(diameter_m: float, tension_N: float) -> str:
 def _summary_of_selection(
     selection: SelectionResult, label: str, request: Selection | None
 ) -> Iterator[Row]:
+    yield from _summary_of_chosen(selection, label, request)
+    for exclusion in selection.exclusions:
+        yield f"  not chosen: {exclusion.sizes}", escape(f"{exclusion.why}; {exclusion.example}")
+
+
+def _summary_of_chosen(
+    selection: SelectionResult, label: str, request: Selection | None
+) -> Iterator[Row]:
     chosen = selection.chosen
     if chosen is None:
         yield label, f"{bad('none')}: {escape(selection.reason or '')}"

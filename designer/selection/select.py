@@ -38,10 +38,10 @@ from designer.selection.cases import (
     together,
     worst_of_each,
 )
-from designer.selection.compare import best_of, may_win, settle, standing_of
+from designer.selection.compare import best_of, may_win, settle, settle_standing
 from designer.selection.continuous import ContinuousOptimum, continuous_optima
 from designer.selection.criteria import criteria_of
-from designer.selection.efficiency import Allowance
+from designer.selection.efficiency import Allowance, why_not_bent
 from designer.selection.objectives import MEANINGS, CandidateFigures
 from designer.selection.prices import offered, with_prices
 from designer.selection.proven import prove_governing
@@ -177,9 +177,11 @@ class _SelectionRun:
         """Try all sizes of these grades; what became of them, or of those with one that holds."""
         candidates = self.sampled(grades)
         solved = {id(candidate.size) for candidate in candidates}
-        why = "the sheave is thinner than the rope, or than a fibre rope may be bent over"
         not_tried = [
-            NotTried(g, size, why) for g in grades for size in g.sizes if id(size) not in solved
+            NotTried(g, size, why_not_bent(g))
+            for g in grades
+            for size in g.sizes
+            if id(size) not in solved
         ]
         front, allowed = self.choose(candidates)
         tried: list[tuple[Grade, list[Candidate], Candidate | None]] = []
@@ -338,8 +340,7 @@ class _SelectionRun:
     ) -> GradeOutcome:
         """Return what became of a grade, and of each of its sizes."""
         for candidate in candidates:
-            standing, reason = standing_of(candidate, front, self.selection.objectives)
-            candidate.standing, candidate.reason = standing, reason
+            settle_standing(candidate, front, self.selection.objectives)
             candidate.requirements = self.screen.requirements(candidate)
             candidate.cases = worst_of_each(candidate.cases)
         return GradeOutcome(

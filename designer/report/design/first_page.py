@@ -238,7 +238,7 @@ def _advice(analysis: Analysis, findings: Findings) -> Context:
     pose, unserved, workspace = analysis.pose, findings.unserved, analysis.workspace
     advice = ""
     if pose is not None and not pose.sizing.statics.is_solved:
-        advice = Verdict(int(pose.sizing.statics.verdict)).advice
+        advice = ""
     return {
         "other_grades": [] if findings.adrift else _other_grades(analysis),
         "pose_advice": advice,
