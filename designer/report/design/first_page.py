@@ -235,13 +235,15 @@ def is_thinnest(analysis: Analysis, what: str) -> bool:
 
 
 def _advice(analysis: Analysis, findings: Findings) -> Context:
-    pose, unserved, workspace = analysis.pose, findings.unserved, analysis.workspace
-    advice = ""
-    if pose is not None and not pose.sizing.statics.is_solved:
-        advice = ""
+    unserved, workspace = findings.unserved, analysis.workspace
+    outcomes = [] if analysis.selection is None else analysis.selection.outcomes
+    pose = analysis.pose
     return {
         "other_grades": [] if findings.adrift else _other_grades(analysis),
-        "pose_advice": advice,
+        "pose_fails": pose is not None and not pose.sizing.statics.is_solved,
+        "some_served": workspace is not None and workspace.sampled is not None,
+        "some_too_thin": any(outcome.outcome == "too_thin" for outcome in outcomes),
+        "adrift_cases": [adrift.loaded.case.name for adrift in findings.adrift],
         "is_layer": unserved is not None and _is_layer(analysis, unserved),
         "is_strip": unserved is not None and unserved.depth_m < _STRIP * unserved.inradius_m,
         "not_served": [] if workspace is None else _verdicts_not_served(analysis),
