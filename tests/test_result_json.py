@@ -177,7 +177,7 @@ def test_negative_answers_are_null_with_a_reason(tmp_path: Path) -> None:
     workspace = result["workspace"]
     assert workspace["feasible"] is False
     assert workspace["sagging"] is None
-    assert "own weight" in workspace["reason"]
+    assert "however thick" in workspace["reason"]
     assert workspace["limit_ratio"] is None
     assert len(workspace["infeasible_example_m"]) == 3
     assert 0.0 < workspace["fraction_no_finite_cable"] < 0.1

@@ -59,7 +59,7 @@ class Verdict(IntEnum):
         State.FAILS,
         ("WARNING_PALE", "//////"),
         "no finite cable",
-        "no section of the family is strong enough to hold the platform and its own weight, "
+        "no section of the family, however thick, holds the platform within its allowable stress, "
         "which is proved",
     )
     NOT_CONVERGED = (

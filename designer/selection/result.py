@@ -124,7 +124,7 @@ class GradeOutcome:
                 return f"holds, but is not compared: {nearest.reason}"
             return f"has no size that meets every requirement: {nearest.size.id}, {nearest.reason}"
         if self.outcome == "no_finite_cable" and self.verdict is Verdict.NO_FINITE_CABLE:
-            return "no section of this rope can hold the workspace: its own weight is too much"
+            return "no section of this rope, however thick, holds a pose within its allowable stress"
         if self.outcome in ("no_finite_cable", "open"):
             return "no pose counts" if self.verdict is None else f"in a pose {self.verdict.clause}"
         return self._too_thin(need)
