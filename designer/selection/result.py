@@ -87,7 +87,8 @@ class GradeOutcome:
         (no size holds); ``no_finite_cable`` (proved); ``open`` (a pose was neither solved nor
         proved to be impossible).
     best : Candidate or None
-        The best size by the objective that decides, of those that meet all requirements.
+        The best size by the objective that decides, of those that meet all requirements; where no
+        size of any grade does, of those that are strong enough.
     verdict : Verdict or None
         Of the pose that no member of the family holds; None where there is none.
     """
@@ -116,7 +117,7 @@ class GradeOutcome:
     def sentence(self) -> str:
         """Why the grade is in or out, for the reader of a report."""
         need = f"{1e3 * self.continuous_diameter_m:.1f} mm needed"
-        if self.best is not None:
+        if self.best is not None and self.outcome == "fits":
             return f"{self.best.size.id} holds everywhere, {need}"
         if self.outcome == "rejected":
             nearest = self.nearest_rejected
@@ -124,14 +125,16 @@ class GradeOutcome:
                 return f"holds, but is not compared: {nearest.reason}"
             return f"has no size that meets every requirement: {nearest.size.id}, {nearest.reason}"
         if self.outcome == "no_finite_cable" and self.verdict is Verdict.NO_FINITE_CABLE:
-            return "no section of this rope, however thick, holds a pose within its allowable stress"
+            return (
+                "no section of this rope, however thick, holds a pose within its allowable stress"
+            )
         if self.outcome in ("no_finite_cable", "open"):
             return "no pose counts" if self.verdict is None else f"in a pose {self.verdict.clause}"
         return self._too_thin(need)
 
     @property
     def brief(self) -> str:
-        """The same in two or three words, where no size meets all requirements."""
+        """The same in two or three words, where the grade does not fit."""
         if self.outcome == "rejected":
             failed = self.nearest_rejected.rejected_by
             return "not compared" if failed is None else f"{failed.title.lower()} not met"

@@ -189,7 +189,8 @@ class _SelectionRun:
             of_grade = [c for c in candidates if c.grade is grade]
             fitting = [c for c in of_grade if c in allowed]
             its_best = best_of(fitting, self.selection.objectives)
-            if its_best is not None or (of_grade and not only_fitting):
+            fits = its_best is not None and its_best.rejected_by is None
+            if fits or (of_grade and not only_fitting):
                 tried.append((grade, of_grade, its_best))
         with self.reporter.task("grades", len(tried)) as advance:
             optima = self._continuous_optima([(grade, of_grade) for grade, of_grade, _ in tried])
@@ -348,14 +349,18 @@ class _SelectionRun:
             family=optimum.family,
             continuous_diameter_m=optimum.diameter_m,
             candidates=tuple(candidates),
-            outcome=_outcome_of(candidates, optimum) if best is None else "fits",
+            outcome=_outcome_of(candidates, best, optimum),
             best=best,
             verdict=optimum.verdict,
         )
 
 
-def _outcome_of(candidates: Sequence[Candidate], optimum: ContinuousOptimum) -> Outcome:
-    """Return what became of a grade of which no size meets all that is asked."""
+def _outcome_of(
+    candidates: Sequence[Candidate], best: Candidate | None, optimum: ContinuousOptimum
+) -> Outcome:
+    """Return what became of a grade, the best of its sizes that hold among them."""
+    if best is not None and best.rejected_by is None:
+        return "fits"
     if any(candidate.verification.holds for candidate in candidates):
         return "rejected"
     if math.isfinite(optimum.diameter_m):

@@ -53,7 +53,7 @@ def selection(analysis: Analysis) -> Context | None:
         "best_form": _form(best),
         "alternatives": alternatives,
         "alternatives_form": _form(alternatives),
-        "thin": [outcome for outcome in rank(result.outcomes) if outcome.best is None],
+        "thin": [outcome for outcome in rank(result.outcomes) if outcome.outcome != "fits"],
         "dominating": Counter(c.dominated_by.label for c in tried if c.dominated_by).most_common(),
         "most_names": _MOST_NAMES,
         "searched": sum(c.verification.is_refined for c in tried),

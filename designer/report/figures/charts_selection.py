@@ -130,6 +130,8 @@ def _ending(axes: Axes, row: int, outcome: GradeOutcome, *, is_chosen: bool) -> 
         mass_kg, colour = outcome.best.total_mass_kg, palette.INK
         mass = canvas.significant(mass_kg, 3)
         text = f"{outcome.best.size.id}, {mass} kg"
+        if outcome.outcome != "fits":
+            text, colour = f"{text}; {outcome.brief}", palette.WARNING
     else:
         text = outcome.brief
     canvas.note(
