@@ -49,7 +49,7 @@ FLEET |= {"robot.winches.drum": {"length": 2.0, "sheave_distance": 5, "fleet_ang
 MOTOR = DRUM | {"robot.winches.motor": {"torque": 100}}
 HANGING: Edit = {
     "robot.platform.mass": 30,
-    "workspace.region": {"box": [[12, 88], [8, 50], [20, 26]]},
+    "workspace.region": {"box": [[30, 70], [15, 45], [20, 26]]},
     "workspace.floor": 19.9,
 }
 REQUIREMENTS: dict[str, tuple[Edit, list[Edit]]] = {
@@ -65,7 +65,6 @@ REQUIREMENTS: dict[str, tuple[Edit, list[Edit]]] = {
         HANGING,
         [
             {"workspace.floor": 15.0},
-            {"robot.anchors": [[0, 0, 60], [100, 0, 60], [50, 80, 60]]},
             {"workspace.region": {"box": [[45, 55], [25, 35], [20, 21]]}},
         ],
     ),
