@@ -242,7 +242,8 @@ def _advice(analysis: Analysis, findings: Findings) -> Context:
         "other_grades": [] if findings.adrift else _other_grades(analysis),
         "pose_fails": pose is not None and not pose.sizing.statics.is_solved,
         "some_served": workspace is not None and workspace.sampled is not None,
-        "some_too_thin": any(outcome.outcome == "too_thin" for outcome in outcomes),
+        "lacks_strength": not analysis.assignment.is_found
+        and any(outcome.outcome == "too_thin" for outcome in outcomes),
         "adrift_cases": [adrift.loaded.case.name for adrift in findings.adrift],
         "is_layer": unserved is not None and _is_layer(analysis, unserved),
         "is_strip": unserved is not None and unserved.depth_m < _STRIP * unserved.inradius_m,
