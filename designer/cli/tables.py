@@ -14,6 +14,7 @@ from designer.cli.terminal import bare_table, show
 from designer.grades.grade import TYPICAL_LOAD_FRACTION, Grade
 from designer.grades.listing import facts
 from designer.model.load_case import STATIC
+from designer.model.requirement import Answer
 from designer.spelling import in_runs
 
 if TYPE_CHECKING:
@@ -162,6 +163,9 @@ def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:
     answer = analysis.answer.value
     count = len(analysis.requirements)
     yield "[bold]answer[/]", f"[bold]{answer}[/], {count - len(analysis.unmet)} of {count} hold"
+    for adrift in analysis.findings.adrift if analysis.answer is Answer.NO else ():
+        words = f"straight cables cannot hold the platform in {adrift.share:.1%} of the poses"
+        yield f"  '{escape(adrift.loaded.case.name)}'", bad(f"{words}, whatever the rope")
     for requirement in analysis.unmet:
         labels = [] if requirement.cable is None else [f"cable {requirement.cable}"]
         if requirement.load_case != "all":

@@ -14,6 +14,7 @@ from designer.model.price_list import PriceList
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.selection.candidate import Candidate, Standing
+from designer.selection.compare import rejection_words
 from designer.selection.prices import PriceEstimate
 from designer.selection.usable import Usable
 from designer.study import Objective
@@ -123,7 +124,8 @@ class GradeOutcome:
             nearest = self.nearest_rejected
             if nearest.rejected_by is None:
                 return f"holds, but is not compared: {nearest.reason}"
-            return f"has no size that meets every requirement: {nearest.size.id}, {nearest.reason}"
+            words = rejection_words(nearest)
+            return f"has no size that meets every requirement: {nearest.size.id}, {words}"
         if self.outcome == "no_finite_cable" and self.verdict is Verdict.NO_FINITE_CABLE:
             return (
                 "no section of this rope, however thick, holds a pose within its allowable stress"
