@@ -23,7 +23,7 @@ Outcome = Literal["fits", "rejected", "too_thin", "no_finite_cable", "open"]
 WHY: Mapping[Standing, str] = {
     "undominated": "holds, and no other beats it in everything that sizes are compared by",
     "dominated": "holds, but another one is as good in everything and better in something",
-    "rejected": "is strong enough, but does not meet: {}",
+    "rejected": "is strong enough, but rejected by the requirement: {}",
     "not_comparable": "holds, but what decides is not known of it",
     "too_thin": "goes beyond its allowable tension",
     "not_held": "no equilibrium was found somewhere",
