@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from copy import deepcopy
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import yaml
-from report_cases import CLEARANCE_NOT_KEPT, PRISM, SIX
+from report_cases import CLEARANCE_NOT_KEPT, DEFAULTS, FAST, PRISM, SIX
 from report_parts import said
 
 from designer.analysis.analyse import Analysis
@@ -47,6 +48,34 @@ SPOOLED = DRUM | {"robot.winches.drum": {"length": 0.1, "dead_turns": 3, "rope_o
 FLEET = DRUM | {"robot.winches.layers": 5}
 FLEET |= {"robot.winches.drum": {"length": 2.0, "sheave_distance": 5, "fleet_angle_max": "1.5 deg"}}
 MOTOR = DRUM | {"robot.winches.motor": {"torque": 100}}
+WINCH = {"robot.winches.drum_diameter": 0.3, "robot.winches.layers": 1}
+LIFE = {
+    "b0": 1.2, "b1": -2.5, "b2": 5.5, "b3": -1.7, "wire_strength": "1770 MPa",
+    "source": "made up for a test", "runs_per_day": 30, "days_min": 1e6,
+}  # fmt: skip
+ALONG_A_PATH: dict[str, tuple[Edit, list[Edit]]] = {
+    "winch_speed": ({"robot.winches.speed_max": 0.1}, [{"robot.winches.speed_max": 20}]),
+    "motor_speed": (
+        WINCH
+        | {
+            "robot.winches.gear_ratio": 50,
+            "robot.winches.motor": {"torque": 1e6, "speed": "60 rpm"},
+        },
+        [{"robot.winches.gear_ratio": 5}, {"robot.winches.drum_diameter": 1.5}],
+    ),
+    "motor_power": (
+        WINCH | {"robot.winches.motor": {"torque": 1e6, "power": 100}},
+        [{"robot.winches.motor": {"torque": 1e6, "power": 1e6}}, LIGHTER],
+    ),
+    "rope_life": (
+        {"selection.sheave_diameter": 0.3, "selection.rope_life": LIFE},
+        [
+            {"selection.sheave_diameter": 0.6},
+            {"selection.safety_factor": 8},
+            {"selection.rope_life": LIFE | {"days_min": 1.0}},
+        ],
+    ),
+}
 HANGING: Edit = {
     "robot.platform.mass": 30,
     "workspace.region": {"box": [[30, 70], [15, 45], [20, 26]]},
@@ -88,6 +117,10 @@ REQUIREMENTS: dict[str, tuple[Edit, list[Edit]]] = {
     "platform_frequency": (
         {"selection.limits": {"platform_frequency": 50}},
         [SMALLER, LIGHTER],
+    ),
+    "excitation": (
+        {"selection.limits": {"excitation": [0.1, 100]}},
+        [{"selection.limits": {"excitation": [900, 1000]}}],
     ),
     "drum_capacity": (
         {"selection.limits": {"drum_capacity": 10}},
@@ -154,16 +187,65 @@ def test_advice_for_a_requirement_betters_it(solve: Solve, name: str) -> None:
         assert is_better(asked(before, name), asked(after, name)), remedy
 
 
+@pytest.mark.parametrize("name", ALONG_A_PATH)
+def test_advice_for_a_requirement_along_a_path_betters_it(
+    solve: Solve, tmp_path: Path, name: str
+) -> None:
+    def moving(edit: Edit, pace: float = 1.0) -> Analysis:
+        rows = [(0, 40, 25, 10), (5, 50, 30, 20), (10, 60, 28, 12), (15, 45, 25, 14)]
+        lines = [f"{pace * t},{x},{y},{z}" for t, x, y, z in rows]
+        path = tmp_path / f"{pace}.csv"
+        path.write_text("\n".join(["time_s,x_m,y_m,z_m", *lines]), encoding="utf-8")
+        base = {**CRANE, "workspace": {"path": str(path)}}
+        return solve(edited(base, edit))
+
+    base, remedies = ALONG_A_PATH[name]
+    before = moving(base)
+    assert not asked(before, name).holds
+    assert advice(before).strip()
+    for remedy in remedies:
+        after = moving(base | remedy)
+        assert is_better(asked(before, name), asked(after, name)), remedy
+    if name != "rope_life":
+        assert is_better(asked(before, name), asked(moving(base, pace=3.0), name))
+
+
 def test_advice_for_clearance_and_stability_betters_them(solve: Solve) -> None:
     before = solve(CLEARANCE_NOT_KEPT)
     assert "apart, make the region smaller, or require less clearance" in advice(before)
     after = solve(CLEARANCE_NOT_KEPT.replace("clearance: 0.4 m", "clearance: 1 mm"))
     assert is_better(asked(before, "clearance"), asked(after, "clearance"))
     tipped = solve(edited(BODY, {"robot.platform.centre_of_mass": [0, 0, 6]}))
-    if not asked(tipped, "stability").holds:
-        assert "move attachments above the centre of mass" in advice(tipped)
-        hung = solve(edited(BODY, {"robot.platform.centre_of_mass": [0, 0, -0.5]}))
+    assert not asked(tipped, "stability").holds
+    assert "Make the region smaller, or move attachments above" in advice(tipped)
+    for remedy in (
+        {"robot.platform.centre_of_mass": [0, 0, -0.5]},
+        {"robot.platform.centre_of_mass": [0, 0, 6], "workspace.region.z": [1, 2]},
+    ):
+        hung = solve(edited(BODY, remedy))
         assert is_better(asked(tipped, "stability"), asked(hung, "stability"))
+
+
+def test_sides_moved_inward_serve_more(analyses: Mapping[str, Analysis], solve: Solve) -> None:
+    """And raised exit points and a stronger cable hold the pose that is not served."""
+    before = analyses["no_finite_cable"]
+    unserved, remedies, words = before.findings.unserved, before.findings.remedies, advice(before)
+    assert unserved is not None
+    assert "Move the sides of the region inward" in words
+    inset = f"{1.2 * unserved.depth_m} m"
+    after = solve(FAST.format(**DEFAULTS | {"inset": inset}))
+    assert before.workspace is not None
+    assert after.workspace is not None
+    shares = [a.census.fraction("solved") for a in (before.workspace, after.workspace)]
+    assert shares[0] < shares[1] == 1.0
+    assert remedies is not None
+    pose, study = before.workspace.infeasible_pose, before.study
+    assert pose is not None
+    assert remedies.raised_m is not None or remedies.stronger is not None
+    if remedies.raised_m is not None:
+        points = np.add(study.robot.exit_points_m, [0.0, 0.0, remedies.raised_m])
+        robot = replace(study.robot, exit_points_m=points)
+        assert size_poses(robot, pose, study.material).statics.is_solved
 
 
 EIGHT: dict[str, Any] = {
