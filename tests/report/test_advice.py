@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from copy import deepcopy
 from dataclasses import replace
@@ -20,6 +21,7 @@ from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
+from designer.resources import example_file
 from designer.sizing.newton import size_poses
 
 Solve = Callable[[str], Analysis]
@@ -386,3 +388,20 @@ def test_failed_sag_comes_before_the_strength_of_the_rope(solve: Solve) -> None:
     words = said(section(Drawings(solve(edited(CRANE, {"workspace.sag": 0.02}))), "answer"))
     assert words.startswith("No. Sag does not hold. The ")
     assert "is strong enough for every pose of the workspace" in words
+
+
+def test_platform_held_by_slack_cables_alone_says_so(solve: Solve) -> None:
+    """FAST's cabin level at its rim: no straight cables balance it."""
+    text = example_file("fast-as-built").read_text(encoding="utf-8")
+    text = text.replace("rotation_vector: [0, -0.24472763, 0]", "rotation_vector: [0, 0, 0]")
+    text = re.sub(r"(?m)^  orientation: .*$", "", text)
+
+    def at(points: str) -> Analysis:
+        return solve(re.sub(r"(?s)points: \[.*?\]\]", f"points: {points}", text))
+
+    before = at("[[103, 0, 177.56], [0, 0, 140]]")
+    words = said(section(Drawings(before), "answer"))
+    assert words.startswith("No. Straight cables cannot hold the platform in the worst pose")
+    assert "allow more sag" not in words
+    assert "heavier" not in advice(before)
+    assert is_better(asked(before, "sag"), asked(at("[[0, 0, 140]]"), "sag"))
