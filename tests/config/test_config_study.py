@@ -195,6 +195,8 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("workspace.orientation_range", "default", "none"),
         Entry("workspace.orientation_free", "default", "none"),
         Entry("selection.grades", "default", "all"),
+        Entry("selection.trust", "default", "B"),
+        Entry("selection.materials", "default", "all"),
         Entry("selection.safety_factor", "4", "4"),
         Entry("selection.duty_class", "default", "none"),
         Entry("selection.objectives", "default", "[mass, drum_diameter, max_tension]"),

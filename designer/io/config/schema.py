@@ -29,6 +29,7 @@ from designer.io.config import regions
 from designer.io.config.columns import Columns
 from designer.io.config.machine import ConfiguredCable, LoadCaseSection, RobotSection
 from designer.io.config.uncertainty import UncertaintySection
+from designer.model.cable import MaterialName, Trust
 from designer.model.duty import RUNNING_ROPE, DutyClass
 from designer.model.measurements import LogColumn, LogSession, Measurements, Reading
 from designer.model.motion import Ends
@@ -42,6 +43,7 @@ from designer.study import CableGroup, DocumentControl, Objective, RopeLimits, S
 from designer.units import describe
 
 _GRADES = "'all' or a list of grade ids"
+_MATERIALS = "'all' or a list of materials such as [steel, stainless]"
 Objectives = Annotated[
     tuple[Objective, ...],
     fields.list_of(1, 5, "a list of objectives such as [mass, drum_diameter]"),
@@ -80,6 +82,16 @@ TurnList = Annotated[
 GradeIds = Annotated[
     Annotated[Literal["all"], fields.only_word("all", _GRADES), Tag("a word")]
     | Annotated[tuple[fields.Text, ...], fields.list_of(1, 1000, _GRADES), Tag("a list")],
+    Discriminator(regions.word_or_list),
+]
+_SomeMaterials = Annotated[
+    tuple[MaterialName, ...],
+    fields.list_of(1, 20, _MATERIALS),
+    AfterValidator(fields.different),
+]
+Materials = Annotated[
+    Annotated[Literal["all"], fields.only_word("all", _MATERIALS), Tag("a word")]
+    | Annotated[_SomeMaterials, Tag("a list")],
     Discriminator(regions.word_or_list),
 ]
 
@@ -268,6 +280,11 @@ class SelectionSection(Section):
 
     grades: GradeIds = "all"
     """Grades to choose among: all, or a list of ids from `designer catalog list`."""
+    trust: Trust = config_field("Least trust", "B")
+    """Lowest trust of a grade that is tried unless `grades` or `prices` name it: A, a maker's or
+    standard's own table, B, a seller's transcript, C, third hand; a doubted size counts as C."""
+    materials: Materials = "all"
+    """Materials to choose among: all, or a list."""
     safety_factor: fields.SafetyFactor = 5.0
     """What is left of the minimum breaking load, over the allowable tension."""
     duty_class: DutyClass = config_field("Duty class", "none")
@@ -320,6 +337,8 @@ class SelectionSection(Section):
             limits=self.limits.limits(),
             rope_life=None if self.rope_life is None else self.rope_life.rope_life(),
             price_list=price_list,
+            trust=self.trust,
+            materials=() if self.materials == "all" else self.materials,
         )
 
 
