@@ -13,6 +13,8 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
 
+import numpy as np
+
 from designer.analysis.carries import Carries, carries_of
 from designer.analysis.findings import Findings, find
 from designer.analysis.governing import (
@@ -34,6 +36,7 @@ from designer.documents.plain import lies_in
 from designer.effects.design import AsBuilt
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.model.requirement import Answer, Requirement, State, answer_of
+from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Budget
@@ -48,6 +51,7 @@ from designer.selection.qualities import Qualities, qualities_of
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.sizing.newton import Sizing, size_poses
+from designer.statics.free_motion import FreeMotion, free_motion
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Study, as_built_by, require_answerable
 from designer.workspace.hanging import HangingCables
@@ -78,6 +82,10 @@ class TemporaryFolder:
 def _remove_locked(lock: Any) -> None:
     lock.release()  # Windows removes no file that is open
     shutil.rmtree(Path(lock.lock_file).parent, ignore_errors=True)
+
+
+_FEW_POSES = 64
+"""Of a workspace, that tell whether a motion is free in all of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,6 +152,19 @@ class Analysis:
     def pose(self) -> PoseAnalysis | None:
         """The configured pose alone; None where the study has none."""
         return None if self.study.pose is None else analyse_pose(self.study)
+
+    @cached_property
+    def free_motion(self) -> FreeMotion | None:
+        """A motion that no cable resists in any pose of the study; known before any is solved."""
+        study, workspace = self.study, self.study.workspace
+        if workspace is not None:
+            landmarks = workspace.space.landmarks()
+            poses = Poses.at(np.concatenate([landmarks, workspace.thinned(_FEW_POSES)]))
+        elif study.pose is not None:
+            poses = study.pose.flat
+        else:
+            return None
+        return free_motion(study.robot, poses)
 
     @cached_property
     def section_m(self) -> float | None:

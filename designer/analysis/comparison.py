@@ -45,7 +45,7 @@ _APART = (
     "findings",
 )  # fmt: skip
 """What is compared by itself, or tells only how and when."""
-_LISTS = ("candidates", "pareto", "usable", "grades", "alternatives", "not_tried")
+_LISTS = ("candidates", "pareto", "usable", "grades", "alternatives", "not_tried", "exclusions")
 """Of ``selection``: told by the products."""
 
 

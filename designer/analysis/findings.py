@@ -15,13 +15,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from designer.analysis.adrift import Adrift, adrift_in
+from designer.arrays import BoolArray, FloatArray
 from designer.grades.grade import Size
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import HangsBelow, Workspace
 from designer.selection.candidate import Candidate
 from designer.selection.result import GradeOutcome
 from designer.selection.verify import Verification, verify
-from designer.sizing.newton import limit_ratio
+from designer.sizing.newton import limit_ratio, size_poses
+from designer.statics.free_motion import FreeMotion
 from designer.statics.inverse import solve_sagging
 from designer.statics.sizes import is_quick
 from designer.workspace.demand import is_left_out
@@ -36,6 +38,9 @@ _MOST_SAMPLES = 20_000
 _FEW_PLACES, _FEW_POSITIONS = 2000, 100  # of robots that are slow to solve
 _CHUNK = 2**18
 _THIN_M = 1e-3
+_STEPS = np.array([0.1, 0.2, 0.3, 0.5, 0.75, 1.0])  # of the way to the middle
+_BELOW = 0.25  # of the robot's size: how far below the exit points cables hold a platform easily
+_RISES, _FACTORS = (0.02, 0.05, 0.1, 0.2, 0.5), (1.1, 1.25, 1.5, 2.0, 4.0)
 
 
 def _named_worst(survey: WorkspaceMap) -> dict[str, Any]:
@@ -109,6 +114,25 @@ class Unserved:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Remedies:
+    """What was tried on a pose that the configured family does not hold, and holds it.
+
+    Parameters
+    ----------
+    position_m : array (3,) or None
+        The nearest one that is held, of some toward the middle below the exit points [m].
+    raised_m : float or None
+        By how much the exit points above the pose are raised for it [m].
+    stronger : float or None
+        How many times as strong the cable is for its weight.
+    """
+
+    position_m: FloatArray | None
+    raised_m: float | None
+    stronger: float | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Findings:
     """Answers to the questions of this module; None where a question does not arise.
 
@@ -130,9 +154,14 @@ class Findings:
         those of groups, where there is one, else with what the configured family needs. None
         without a workspace.
     unserved : Unserved or None
-        None where every sample is served, and for a list of points.
+        None where every sample is served, or none is, and for a list of points.
     adrift : tuple of Adrift
         Load cases that carry the platform away somewhere.
+    free_motion : FreeMotion or None
+        A motion of the platform that no cable resists in any pose.
+    remedies : Remedies or None
+        Of the configured pose if that is not held, else of one of the workspace; None where all
+        are.
     """
 
     chosen_outcome: GradeOutcome | None = field(default=None, metadata={"json": None})
@@ -145,6 +174,8 @@ class Findings:
     hanging: float | None = field(default=None, metadata={"json": "hanging_share"})
     unserved: Unserved | None = None
     adrift: tuple[Adrift, ...] = field(default=(), metadata={"json": "not_in_equilibrium"})
+    free_motion: FreeMotion | None = None
+    remedies: Remedies | None = None
 
 
 def find(analysis: Analysis) -> Findings:
@@ -154,6 +185,8 @@ def find(analysis: Analysis) -> Findings:
         hanging=_hanging(analysis),
         unserved=_unserved(analysis),
         adrift=_adrift(analysis),
+        free_motion=analysis.free_motion,
+        remedies=_remedies(analysis),
     )
     chosen = analysis.chosen
     if chosen is None or analysis.selection is None:
@@ -259,12 +292,46 @@ def _few(robot: Robot, workspace: Workspace) -> Workspace:
     return replace(workspace, samples=min(workspace.samples, largest))
 
 
+def _remedies(analysis: Analysis) -> Remedies | None:
+    pose, survey, study = analysis.pose, analysis.workspace, analysis.study
+    place = None if survey is None else survey.infeasible_pose
+    if pose is not None and not pose.sizing.statics.is_solved:
+        place = study.pose
+    if place is None or analysis.free_motion is not None:
+        return None
+    built, at = analysis.built, place.flat
+    robot, family = built.robot, built.material(study.material)
+
+    def holds(robot: Robot, poses: Poses = at, strength: float = 1.0) -> BoolArray:
+        material = replace(family, allowable_stress_Pa=strength * family.allowable_stress_Pa)
+        return np.atleast_1d(size_poses(robot, poses, material).statics.is_solved)
+
+    up = -robot.gravity_direction / np.linalg.norm(robot.gravity_direction)
+    from_here_m = robot.exit_points_m - at.position_m[0]
+    heights_m, middle_m = from_here_m @ up, from_here_m.mean(axis=0)
+    size_m = float(np.ptp(robot.exit_points_m, axis=0).max())
+    level_m = middle_m - (middle_m @ up) * up
+    down_m = min(0.0, float(heights_m.max()) - _BELOW * size_m) * up
+    moves_m = (_STEPS[:, None, None] * [level_m, level_m + down_m]).reshape(-1, 3)
+    rotations = np.broadcast_to(at.rotations[0], (len(moves_m), 3, 3))
+    moved = Poses(at.position_m[0] + moves_m, rotations)
+    is_held = holds(robot, moved)
+    rise = size_m * np.outer(heights_m > 0.0, up)
+    higher = [replace(robot, exit_points_m=robot.exit_points_m + share * rise) for share in _RISES]
+    raised = [k for k, with_rise in enumerate(higher) if rise.any() and holds(with_rise)]
+    return Remedies(
+        moved.position_m[is_held.argmax()] if is_held.any() else None,
+        size_m * _RISES[raised[0]] if raised else None,
+        next((factor for factor in _FACTORS if holds(robot, strength=factor)), None),
+    )
+
+
 def _unserved(analysis: Analysis) -> Unserved | None:
     workspace, survey = analysis.study.workspace, analysis.workspace
     if workspace is None or survey is None or analysis.sweep_file is None:
         return None
     region = workspace.region
-    if survey.is_feasible:
+    if survey.is_feasible or survey.sampled is None:
         return None
     depth_m = inradius_m = 0.0
     lowest_m = np.inf

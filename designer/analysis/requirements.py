@@ -36,6 +36,7 @@ from designer.selection.requirements import (
 from designer.selection.result import SelectionResult
 from designer.selection.spooling import spooling_of
 from designer.sizing.newton import size_poses
+from designer.statics.free_motion import FreeMotion
 from designer.study import Selection, Study
 from designer.workspace.demand import tension_demand
 from designer.workspace.result import WorkspaceMap
@@ -102,11 +103,11 @@ def requirements_of(analysis: Analysis) -> tuple[Requirement, ...]:
     design = None if analysis.qualities is None else analysis.qualities.cable
     requirements: list[Requirement] = []
     if pose is not None:
-        requirements.append(_pose(pose))
+        requirements.append(_pose(pose, analysis.free_motion))
     if needs:
         requirements += map(_need, needs)
     elif workspace is not None:
-        requirements.append(_workspace(study, built, workspace))
+        requirements.append(_workspace(study, built, workspace, analysis.free_motion))
     if assignment.rope is not None:
         requirements += assignment.rope.requirements
     elif study.selection is not None and assignment.has_groups:
@@ -232,7 +233,7 @@ def _stretched(assignment: Assignment, cable: Cable, sign: float) -> Cable:
     return at_end(assignment.ropes[0], cable)
 
 
-def _pose(pose: PoseAnalysis) -> Requirement:
+def _pose(pose: PoseAnalysis, free: FreeMotion | None) -> Requirement:
     statics = pose.sizing.statics
     verdict = Verdict(int(statics.verdict))
     return Requirement(
@@ -243,14 +244,17 @@ def _pose(pose: PoseAnalysis) -> Requirement:
         state=verdict.state,
         load_case=STATIC.name,
         place=statics.poses.place,
-        remark="" if statics.is_solved else verdict.clause,
+        remark="" if statics.is_solved else verdict.clause if free is None else free.clause,
     )
 
 
-def _workspace(study: Study, built: AsBuilt, workspace: WorkspaceMap) -> Requirement:
+def _workspace(
+    study: Study, built: AsBuilt, workspace: WorkspaceMap, free: FreeMotion | None
+) -> Requirement:
     state, remark, place = State.HOLDS, "", None
     if not workspace.is_feasible:
         state, remark = _why_not_feasible(study, built, workspace)
+        remark = remark if free is None else free.clause
         place = None if workspace.infeasible_pose is None else workspace.infeasible_pose.place
     return Requirement(
         id="workspace",

@@ -51,6 +51,7 @@ def selection_dict(
         "pareto": [rows[c] for c in selection.front],
         "candidates": [rows[c] for c in selection.candidates],
         "not_tried": selection.not_tried,
+        "exclusions": selection.exclusions,
         "grades": selection.outcomes,
         "alternatives": [rows[o.best] for o in selection.alternatives if o.best],
         "usable": [record(size) | {"grade": usable.grade.id} for size in usable.sizes]
@@ -132,5 +133,11 @@ def candidates_csv(selection: SelectionResult) -> str:
             parts = enumerate(value, start=1) if name in _LISTS else [(0, value)]
             row |= {_LISTS.get(name, name).format(k): part for k, part in parts}
         rows.append(row)
+    rows += [
+        {"grade": left.grade.id, "size_id": size.id, "diameter_m": size.diameter_m}
+        | {"standing": "not_tried", "why": left.reason, "trust": left.grade.trust}
+        for left in selection.not_tried
+        for size in left.sizes
+    ]
     names = list(rows[0]) if rows else ["grade", "size_id"]
-    return csv_text([names, *([row[name] for name in names] for row in rows)])
+    return csv_text([names, *([row.get(name) for name in names] for row in rows)])

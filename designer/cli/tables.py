@@ -14,6 +14,7 @@ from designer.cli.terminal import bare_table, show
 from designer.grades.grade import TYPICAL_LOAD_FRACTION, Grade
 from designer.grades.listing import facts
 from designer.model.load_case import STATIC
+from designer.model.requirement import Answer
 from designer.spelling import in_runs, kilograms, position
 
 if TYPE_CHECKING:
@@ -115,6 +116,14 @@ def _extreme(diameter_m: float, tension_N: float) -> str:
 def _summary_of_selection(
     selection: SelectionResult, label: str, request: Selection | None
 ) -> Iterator[Row]:
+    yield from _summary_of_chosen(selection, label, request)
+    for exclusion in selection.exclusions:
+        yield f"  not chosen: {exclusion.sizes}", escape(f"{exclusion.why}; {exclusion.example}")
+
+
+def _summary_of_chosen(
+    selection: SelectionResult, label: str, request: Selection | None
+) -> Iterator[Row]:
     chosen = selection.chosen
     if chosen is None:
         yield label, f"{bad('none')}: {escape(selection.reason or '')}"
@@ -158,6 +167,9 @@ def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:
         yield "", escape(omissions)
     for condition in terms.subject_to:
         yield "  subject to", escape(f"{condition.what}. {condition.sentences}")
+    for adrift in analysis.findings.adrift if analysis.answer is Answer.NO else ():
+        words = f"straight cables cannot hold the platform in {adrift.share:.1%} of the poses"
+        yield f"  '{escape(adrift.loaded.case.name)}'", bad(f"{words}, whatever the rope")
     for requirement in analysis.unmet:
         labels = [] if requirement.cable is None else [f"cable {requirement.cable}"]
         if requirement.load_case != "all":

@@ -12,11 +12,11 @@ from designer.analysis.requirements import Terms
 from designer.arrays import FloatArray
 from designer.explore.question import Question, Rope, RopePerCable
 from designer.grades.grade import Grade, Size
-from designer.model.requirement import Answer, Requirement, State
+from designer.model.requirement import Answer, Requirement
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Proof
 from designer.selection.candidate import Candidate
-from designer.selection.compare import burdens, failure_words, is_undominated
+from designer.selection.compare import burdens, is_undominated, rejection_words
 from designer.selection.groups.result import GroupChoice
 from designer.selection.objectives import UNKNOWN, CandidateFigures
 from designer.selection.result import SelectionResult
@@ -42,6 +42,8 @@ class RopeRow:
         With end fittings, bending and safety factor; NaN where it was not tried.
     verification, figures
         What it meets over the workspace, and what ropes are compared by.
+    is_rejected : bool
+        Whether it is known to fail a requirement beside strength.
     """
 
     grade: Grade
@@ -51,6 +53,7 @@ class RopeRow:
     allowable_tension_N: float = math.nan
     verification: Verification = NOT_TRIED
     figures: CandidateFigures = UNKNOWN
+    is_rejected: bool = False
 
     @property
     def rope(self) -> Rope:
@@ -60,7 +63,7 @@ class RopeRow:
     @property
     def holds(self) -> bool:
         """Whether it is strong enough and fails nothing else, as far as it was looked at."""
-        return self.verification.holds and self.standing != "rejected"
+        return self.verification.holds and not self.is_rejected
 
     @property
     def place(self) -> FloatArray | None:
@@ -167,8 +170,8 @@ def _quick_row(candidate: Candidate, is_best: bool, is_in_front: bool) -> RopeRo
         standing, reason = "not_held", "no equilibrium was found in some pose"
     elif not verification.holds:
         standing, reason = "too_thin", "beyond its allowable tension in some pose"
-    elif candidate.rejected_by is not None:
-        standing, reason = "rejected", failure_words(candidate.rejected_by)
+    elif (rejection := rejection_words(candidate)) is not None:
+        standing, reason = "rejected", rejection
     elif is_in_front:
         standing, reason = "undominated", "holds at the samples, and no other beats it there"
     else:
@@ -178,7 +181,7 @@ def _quick_row(candidate: Candidate, is_best: bool, is_in_front: bool) -> RopeRo
 
 def _row(candidate: Candidate, standing: str, reason: str) -> RopeRow:
     allowable_tension_N = candidate.cable.allowable_tension_N
-    met = candidate.verification, candidate.figures
+    met = candidate.verification, candidate.figures, candidate.rejected_by is not None
     return RopeRow(candidate.grade, candidate.size, reason, standing, allowable_tension_N, *met)
 
 
@@ -208,11 +211,11 @@ def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes:
 def ropes_of(selection: SelectionResult, groups: GroupChoice | None = None) -> Ropes:
     """Return the rows of a selection that was made in full."""
     chosen = selection.chosen
-    rows = [_full_row(candidate) for candidate in selection.candidates]
+    rows = [_row(c, c.standing, c.reason) for c in selection.candidates]
     rows += [
         RopeRow(omitted.grade, size, omitted.reason)
         for omitted in selection.not_tried
-        for size in (omitted.grade.sizes if omitted.size is None else (omitted.size,))
+        for size in omitted.sizes
     ]
     return Ropes(
         rows=tuple(rows),
@@ -222,9 +225,3 @@ def ropes_of(selection: SelectionResult, groups: GroupChoice | None = None) -> R
         groups=groups,
         proof=selection.proof,
     )
-
-
-def _full_row(candidate: Candidate) -> RopeRow:
-    fails = any(requirement.state is State.FAILS for requirement in candidate.requirements)
-    standing = "rejected" if fails else candidate.standing
-    return _row(candidate, standing, candidate.reason)

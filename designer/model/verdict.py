@@ -16,7 +16,7 @@ class Verdict(IntEnum):
 
     Each has a code; whether the pose is held, and ``OPEN`` where the verdict proves nothing and
     another way may still find a solution; its colour among those of `designer.report.figures` and
-    its hatch in charts; its reason in two or three words and in a clause; and what a user can do.
+    its hatch in charts; and its reason in two or three words and in a clause.
     """
 
     state: State
@@ -24,7 +24,6 @@ class Verdict(IntEnum):
     hatch: str
     reason: str
     clause: str
-    advice: str
 
     def __new__(
         cls,
@@ -33,13 +32,12 @@ class Verdict(IntEnum):
         look: tuple[str, str] = ("INK", ""),
         reason: str = "",
         clause: str = "",
-        advice: str = "",
     ) -> Self:
         """Return the member of this code with its properties."""
         verdict = int.__new__(cls, code)
         verdict._value_ = code
         verdict.state, (verdict.colour, verdict.hatch) = state, look
-        verdict.reason, verdict.clause, verdict.advice = reason, clause, advice
+        verdict.reason, verdict.clause = reason, clause
         return verdict
 
     SOLVED = (
@@ -55,16 +53,14 @@ class Verdict(IntEnum):
         ("WARNING", ""),
         "no taut cables hold it",
         "no tensions of taut cables hold the platform, which is proved",
-        "Move the configured pose below the exit points and inside their outline.",
     )
     NO_FINITE_CABLE = (
         2,
         State.FAILS,
         ("WARNING_PALE", "//////"),
         "no finite cable",
-        "no section of the family is strong enough to hold the platform and its own weight, "
+        "no section of the family, however thick, holds the platform within its allowable stress, "
         "which is proved",
-        "Move the configured pose away from the edge of the workspace, or lower.",
     )
     NOT_CONVERGED = (
         3,
@@ -72,7 +68,6 @@ class Verdict(IntEnum):
         ("INK", ""),
         "not converged",
         "the solver found no solution and no proof that there is none",
-        NO_FINITE_CABLE[-1],
     )
     RANK_DEFICIENT = (
         4,
@@ -81,7 +76,6 @@ class Verdict(IntEnum):
         "rank deficient",
         "no cables were found that hold the platform; straight ones leave some force or moment, "
         "if not the present load, that no tensions can take up",
-        NO_FINITE_CABLE[-1],
     )
     NOT_FOUND = (
         5,
@@ -89,7 +83,13 @@ class Verdict(IntEnum):
         ("WARNING_PALE", "......"),
         "none found",
         "straight cables cannot hold the platform; sagging ones might, but none were found",
-        OUTSIDE_HULL[-1],
+    )
+    NO_LENGTH = (
+        6,
+        State.FAILS,
+        ("LEFT_OUT", "xxxxxx"),
+        "a cable of no length",
+        "a cable has no length: its attachment is at its exit point",
     )
 
     @property
@@ -100,7 +100,7 @@ class Verdict(IntEnum):
     @property
     def questions_all_ropes(self) -> bool:
         """Whether it may be that no rope whatever holds the pose, sized or of the catalogue."""
-        return self not in (Verdict.SOLVED, Verdict.NO_FINITE_CABLE, Verdict.NOT_CONVERGED)
+        return self in (Verdict.OUTSIDE_HULL, Verdict.RANK_DEFICIENT, Verdict.NOT_FOUND)
 
     @property
     def label(self) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -53,7 +54,9 @@ class Candidate:
     standing : str
         What became of it; empty where it was not compared.
     reason : str
-        Why, for the reader of a report.
+        Why, for the reader of a report: decided once, read by all pages and files.
+    dominated_by : Candidate or None
+        A candidate that is as good in everything it is compared by and better in something.
     requirements : tuple of Requirement
         All that the study asks of it; empty where that was not evaluated in full.
     """
@@ -68,6 +71,7 @@ class Candidate:
     rejected_by: Requirement | None = None
     standing: Standing | Literal[""] = ""
     reason: str = ""
+    dominated_by: Candidate | None = None
     requirements: tuple[Requirement, ...] = ()
 
     @property
@@ -139,8 +143,13 @@ def candidates_of(selection: Selection, grades: Sequence[Grade], built: AsBuilt)
 
 def common_currency(grades: Sequence[Grade]) -> str | None:
     """Return the currency in which most sizes are priced; None where none is."""
-    currencies = [g.currency for g in grades for s in g.sizes if g.currency and s.price_per_m]
-    return max(sorted(set(currencies)), key=currencies.count, default=None)
+    return _commonest(g.currency for g in grades for s in g.sizes if s.price_per_m is not None)
+
+
+def _commonest(currencies: Iterable[str | None]) -> str | None:
+    """Return the currency named most often, of several the first by its letters."""
+    counts = Counter(sorted(filter(None, currencies)))
+    return max(counts, key=lambda currency: counts[currency], default=None)
 
 
 def cost(candidate: Candidate, length_m: float, currency: str | None) -> float:
@@ -153,8 +162,7 @@ def cost(candidate: Candidate, length_m: float, currency: str | None) -> float:
 def priced(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
     """Return the candidates with a price, in the currency that most of them have."""
     sold = [c for c in candidates if c.size.price_per_m is not None and c.grade.currency]
-    currencies = [candidate.grade.currency or "" for candidate in sold]
-    commonest = max(sorted(set(currencies), reverse=True), key=currencies.count, default=None)
+    commonest = _commonest(candidate.grade.currency for candidate in sold)
     return tuple(candidate for candidate in sold if candidate.grade.currency == commonest)
 
 

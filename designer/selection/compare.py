@@ -10,7 +10,6 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.model.load_case import STATIC
-from designer.model.requirement import Requirement
 from designer.selection.candidate import Candidate, Standing
 from designer.selection.objectives import MEANINGS
 from designer.selection.verify import Verification
@@ -19,6 +18,7 @@ from designer.study import Objective
 Search = Callable[[Sequence[Candidate]], Sequence[Verification]]
 """Searches several candidates between the samples."""
 
+_ROUNDING_MM = 1e-6
 NEAR_LIMIT = 0.9
 """Utilisation over the samples from where a search between them may well pass the limit."""
 
@@ -86,10 +86,16 @@ def dominator_of(row: FloatArray, rivals: FloatArray) -> int | None:
     return int(at[np.argmin(rivals[at, 0])]) if len(at) else None
 
 
-def standing_of(
+def settle_standing(
+    candidate: Candidate, front: Sequence[Candidate], objectives: Sequence[Objective]
+) -> None:
+    """Note what became of a candidate, and why: for all pages and files."""
+    candidate.standing, candidate.reason = _standing(candidate, front, objectives)
+
+
+def _standing(
     candidate: Candidate, front: Sequence[Candidate], objectives: Sequence[Objective]
 ) -> tuple[Standing, str]:
-    """Return what became of a candidate, and why."""
     met, best = candidate.verification, front[0] if front else None
     worst = f"({', '.join(f'{x:.4g}' for x in met.worst_place[:3])}) m{candidate.in_case}"
     if candidate.sampled.not_held or np.isinf(met.utilisation):
@@ -101,7 +107,7 @@ def standing_of(
         least = "" if candidate.sampled.is_complete else "at least "
         percent = f"{least}{100.0 * met.utilisation:.4g} %"
         return "too_thin", f"meets {percent} of its allowable tension at {worst}"
-    failed = None if candidate.rejected_by is None else failure_words(candidate.rejected_by)
+    failed = rejection_words(candidate)
     if failed is not None and candidate is not best:
         return "rejected", failed
     if not may_win(candidate, objectives):
@@ -110,6 +116,7 @@ def standing_of(
         return _standing_in_front(candidate, best, objectives, failed)
     number = dominator_of(burdens([candidate], objectives)[0], burdens(front, objectives))
     assert number is not None  # else it would be in the set
+    candidate.dominated_by = front[number]
     is_complete = all(case.sampled.is_complete for case in candidate.cases)
     at = "the samples" if is_complete else "the samples tried first"
     unsearched = "" if met.is_refined else f"; holds at {at}, not searched between them"
@@ -128,10 +135,17 @@ def _standing_in_front(
     return "undominated", than if better else "as good as the chosen one"
 
 
-def failure_words(requirement: Requirement) -> str:
-    """Return which requirement a candidate fails and by how much, for the reader of a report."""
-    case = "" if requirement.load_case in ("all", STATIC.name) else f" in '{requirement.load_case}'"
-    return f"{requirement.title.lower()}{case} {requirement.words}"
+def rejection_words(candidate: Candidate) -> str | None:
+    """Return which requirement a candidate fails, by how much, and what would help if known."""
+    failed = candidate.rejected_by
+    if failed is None:
+        return None
+    case = "" if failed.load_case in ("all", STATIC.name) else f" in '{failed.load_case}'"
+    words = f"{failed.title.lower()}{case} {failed.words}"
+    if failed.id != "sheave_ratio":
+        return words
+    least_mm = math.ceil(1e3 * failed.demand * candidate.size.diameter_m - _ROUNDING_MM)
+    return f"{words}; it would hold on sheaves of {least_mm} mm and more"
 
 
 def may_win(candidate: Candidate, objectives: Sequence[Objective]) -> bool:

@@ -63,8 +63,8 @@ class Allowance:
         if self.sheave_diameter_m is None:
             return 1.0
         ratio = self.sheave_diameter_m / diameter_m
-        least = grade.sheave_ratio.minimum if grade.sheave_ratio else None
-        if grade.material not in ("steel", "stainless steel", None) and least is not None:
+        least = _least_of_fibre(grade)
+        if least is not None:
             return 1.0 if ratio >= least else math.nan
         return bending_efficiency(ratio)
 
@@ -84,6 +84,20 @@ class Allowance:
     def _factor(self, grade: Grade, diameter_m: float) -> float:
         """Return minimum breaking load over allowable tension."""
         return self.safety_factor / self.efficiency(grade, diameter_m)
+
+
+def _least_of_fibre(grade: Grade) -> float | None:
+    """Return the least D/d of a fibre rope by its maker; None for wire, or where none is given."""
+    is_fibre = grade.material not in ("steel", "stainless steel", None)
+    return grade.sheave_ratio.minimum if grade.sheave_ratio and is_fibre else None
+
+
+def why_not_bent(grade: Grade) -> str:
+    """Return why the rule has no efficiency for a size of a grade."""
+    least = _least_of_fibre(grade)
+    if least is None:
+        return "the sheave is thinner than the rope"
+    return f"the sheave is thinner than {least:g} times the rope, the least of its grade"
 
 
 def bending_efficiency(sheave_ratio: float) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
@@ -11,12 +13,22 @@ from designer.model.load_case import STATIC
 from designer.model.price_list import PriceList
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
-from designer.selection.candidate import Candidate
+from designer.selection.candidate import Candidate, Standing
+from designer.selection.compare import rejection_words
 from designer.selection.prices import PriceEstimate
 from designer.selection.usable import Usable
 from designer.study import Objective
 
 Outcome = Literal["fits", "rejected", "too_thin", "no_finite_cable", "open"]
+WHY: Mapping[Standing, str] = {
+    "undominated": "holds, and no other beats it in everything that sizes are compared by",
+    "dominated": "holds, but another one is as good in everything and better in something",
+    "rejected": "is strong enough, but rejected by the requirement: {}",
+    "not_comparable": "holds, but what decides is not known of it",
+    "too_thin": "goes beyond its allowable tension",
+    "not_held": "no equilibrium was found somewhere",
+}
+"""Why sizes of a standing were not chosen; ``{}`` stands for the title of a requirement."""
 _BY_ID = {"json": lambda grade: {"grade": grade.id}}
 
 
@@ -27,6 +39,34 @@ class NotTried:
     grade: Grade = field(metadata=_BY_ID)
     size: Size | None = field(metadata={"json": lambda size: {"size_id": size and size.id}})
     reason: str
+
+    @property
+    def sizes(self) -> tuple[Size, ...]:
+        """The size, or all of the grade."""
+        return self.grade.sizes if self.size is None else (self.size,)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Exclusion:
+    """Sizes that were not chosen for the same reason.
+
+    Parameters
+    ----------
+    standing : str
+        What became of them; ``not_tried`` where they were not solved.
+    why : str
+        Why, in words for all of them.
+    sizes, grades : int
+        How many, and of how many grades.
+    example : str
+        The one nearest to its limit, and its own reason.
+    """
+
+    standing: Standing | Literal["not_tried"]
+    why: str
+    sizes: int
+    grades: int
+    example: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,7 +88,8 @@ class GradeOutcome:
         (no size holds); ``no_finite_cable`` (proved); ``open`` (a pose was neither solved nor
         proved to be impossible).
     best : Candidate or None
-        The best size by the objective that decides, of those that meet all requirements.
+        The best size by the objective that decides, of those that meet all requirements; where no
+        size of any grade does, of those that are strong enough.
     verdict : Verdict or None
         Of the pose that no member of the family holds; None where there is none.
     """
@@ -77,18 +118,42 @@ class GradeOutcome:
     def sentence(self) -> str:
         """Why the grade is in or out, for the reader of a report."""
         need = f"{1e3 * self.continuous_diameter_m:.1f} mm needed"
-        if self.best is not None:
+        if self.best is not None and self.outcome == "fits":
             return f"{self.best.size.id} holds everywhere, {need}"
         if self.outcome == "rejected":
-            last = [c for c in self.candidates if c.verification.holds][-1]
-            if last.standing == "not_comparable":
-                return f"holds, but is not compared: {last.reason}"
-            return f"has no size that meets every requirement: {last.size.id}, {last.reason}"
+            nearest = self.nearest_rejected
+            if nearest.rejected_by is None:
+                return f"holds, but is not compared: {nearest.reason}"
+            words = rejection_words(nearest)
+            return f"has no size that meets every requirement: {nearest.size.id}, {words}"
         if self.outcome == "no_finite_cable" and self.verdict is Verdict.NO_FINITE_CABLE:
-            return "no section of this rope can hold the workspace: its own weight is too much"
+            return (
+                "no section of this rope, however thick, holds a pose within its allowable stress"
+            )
         if self.outcome in ("no_finite_cable", "open"):
             return "no pose counts" if self.verdict is None else f"in a pose {self.verdict.clause}"
         return self._too_thin(need)
+
+    @property
+    def brief(self) -> str:
+        """The same in two or three words, where the grade does not fit."""
+        if self.outcome == "rejected":
+            failed = self.nearest_rejected.rejected_by
+            return "not compared" if failed is None else f"{failed.title.lower()} not met"
+        if self.outcome == "too_thin":
+            thickest = self.grade.thickest
+            is_thin = not self.fails_in and self.continuous_diameter_m > thickest.diameter_m
+            return f"{thickest.id} insufficient" if is_thin else "no size holds"
+        if self.verdict is None:
+            return "no pose counts"
+        is_heavy = self.verdict is Verdict.NO_FINITE_CABLE
+        return "no section holds" if is_heavy else self.verdict.reason
+
+    @property
+    def nearest_rejected(self) -> Candidate:
+        """Of the sizes that are strong enough, the one nearest to meeting all requirements."""
+        holding = [c for c in self.candidates if c.verification.holds]
+        return min(reversed(holding), key=_excess)  # the thickest, where nothing tells them apart
 
     def _too_thin(self, need: str) -> str:
         if self.fails_in:
@@ -99,6 +164,12 @@ class GradeOutcome:
         if self.continuous_diameter_m <= sold[-1].diameter_m:
             return f"has no size that holds, {need} by the law fitted to its sizes"
         return f"is insufficient in its largest size sold, {self.grade.thickest.id}, {need}"
+
+
+def _excess(candidate: Candidate) -> float:
+    """Return the utilisation of what a candidate is rejected by; the worst where that is none."""
+    failed = candidate.rejected_by
+    return math.inf if failed is None or math.isnan(failed.utilisation) else failed.utilisation
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -153,6 +224,26 @@ class SelectionResult:
     def candidates(self) -> tuple[Candidate, ...]:
         """All sizes that were solved."""
         return tuple(c for outcome in self.outcomes for c in outcome.candidates)
+
+    @property
+    def exclusions(self) -> tuple[Exclusion, ...]:
+        """Why sizes were not chosen: each but the chosen one counts in one row."""
+        groups: dict[tuple[Standing | Literal["not_tried"], str], list[tuple[Grade, str]]] = {}
+        for standing, why in WHY.items():
+            same = [c for c in self.candidates if c.standing == standing]
+            is_rejected = standing == "rejected"
+            same.sort(key=_excess if is_rejected else lambda c: c.verification.utilisation)
+            for c in same:
+                title = c.rejected_by.title.lower() if c.rejected_by and is_rejected else ""
+                group = groups.setdefault((standing, why.format(title)), [])
+                group.append((c.grade, f"{c.name}: {c.reason}"))
+        for left in self.not_tried:
+            group = groups.setdefault(("not_tried", f"not solved: {left.reason}"), [])
+            group += [(left.grade, f"{left.grade.id}, {size.id}") for size in left.sizes]
+        return tuple(
+            Exclusion(standing, why, len(group), len({grade.id for grade, _ in group}), group[0][1])
+            for (standing, why), group in groups.items()
+        )
 
     @property
     def front(self) -> tuple[Candidate, ...]:

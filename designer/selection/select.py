@@ -37,10 +37,10 @@ from designer.selection.cases import (
     together,
     worst_of_each,
 )
-from designer.selection.compare import best_of, may_win, settle, standing_of
+from designer.selection.compare import best_of, may_win, settle, settle_standing
 from designer.selection.continuous import ContinuousOptimum, continuous_optima
 from designer.selection.criteria import criteria_of
-from designer.selection.efficiency import Allowance
+from designer.selection.efficiency import Allowance, why_not_bent
 from designer.selection.objectives import MEANINGS, CandidateFigures
 from designer.selection.prices import offered, with_prices
 from designer.selection.proven import prove_governing
@@ -179,9 +179,8 @@ class _SelectionRun:
         """Try all sizes of these grades; what became of them, or of those with one that holds."""
         candidates = self.sampled(grades)
         solved = {id(candidate.size) for candidate in candidates}
-        why = "the sheave is thinner than the rope, or than a fibre rope may be bent over"
         not_tried = [
-            NotTried(g, size, g.why_excluded(self.selection, size) or why)
+            NotTried(g, size, g.why_excluded(self.selection, size) or why_not_bent(g))
             for g in grades
             for size in g.sizes
             if id(size) not in solved
@@ -192,7 +191,8 @@ class _SelectionRun:
             of_grade = [c for c in candidates if c.grade is grade]
             fitting = [c for c in of_grade if c in allowed]
             its_best = best_of(fitting, self.selection.objectives)
-            if its_best is not None or (of_grade and not only_fitting):
+            fits = its_best is not None and its_best.rejected_by is None
+            if fits or (of_grade and not only_fitting):
                 tried.append((grade, of_grade, its_best))
         with self.reporter.task("grades", len(tried)) as advance:
             optima = self._continuous_optima([(grade, of_grade) for grade, of_grade, _ in tried])
@@ -364,8 +364,7 @@ class _SelectionRun:
     ) -> GradeOutcome:
         """Return what became of a grade, and of each of its sizes."""
         for candidate in candidates:
-            standing, reason = standing_of(candidate, front, self.selection.objectives)
-            candidate.standing, candidate.reason = standing, reason
+            settle_standing(candidate, front, self.selection.objectives)
             candidate.requirements = self.screen.requirements(candidate)
             candidate.cases = worst_of_each(candidate.cases)
         return GradeOutcome(
@@ -373,14 +372,18 @@ class _SelectionRun:
             family=optimum.family,
             continuous_diameter_m=optimum.diameter_m,
             candidates=tuple(candidates),
-            outcome=_outcome_of(candidates, optimum) if best is None else "fits",
+            outcome=_outcome_of(candidates, best, optimum),
             best=best,
             verdict=optimum.verdict,
         )
 
 
-def _outcome_of(candidates: Sequence[Candidate], optimum: ContinuousOptimum) -> Outcome:
-    """Return what became of a grade of which no size meets all that is asked."""
+def _outcome_of(
+    candidates: Sequence[Candidate], best: Candidate | None, optimum: ContinuousOptimum
+) -> Outcome:
+    """Return what became of a grade, the best of its sizes that hold among them."""
+    if best is not None and best.rejected_by is None:
+        return "fits"
     if any(candidate.verification.holds for candidate in candidates):
         return "rejected"
     if math.isfinite(optimum.diameter_m):

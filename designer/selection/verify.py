@@ -303,7 +303,7 @@ class _Totals:
         """Add what cables met at positions, and where each is lost, if it is."""
         self.tried[rows] += len(positions) * counts
         row, cell = np.nonzero(meets.utilisation > self.utilisation[rows])
-        higher = np.asarray(rows)[row], cell
+        higher = np.asarray(rows, dtype=np.int64)[row], cell
         self.utilisation[higher] = meets.utilisation[row, cell]
         self.worst_places[higher] = positions[meets.pose[row, cell]]
         self.longest_m[rows] = np.maximum(self.longest_m[rows], meets.longest_m)

@@ -36,6 +36,8 @@ _FEW_TURNS = 5
 """Of pulleys, before poses that have come to rest are left out."""
 LONG = 1.5
 """Length over chord above which a cable counts as far too long."""
+_NO_LENGTH = 1e-12
+"""Of a chord over the longest one of the pose: the attachment is at the exit point."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -181,9 +183,10 @@ def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -
     points = straight_run(robot, poses).exit_points_m
     situation = task.situation.part(unsolved).starting_at(points)
     is_near, least_N = np.zeros(len(unsolved), dtype=np.bool_), robot.tension_min_N
-    bows_out = False
+    bows_out, level = False, level_geometry(robot, poses)
+    chord_m = np.hypot(level.horizontal_distance_m, level.drop_m)
+    has_no_length = chord_m.min(axis=1) <= _NO_LENGTH * chord_m.max(axis=1)
     if robot.pulley_radius_m > 0.0:  # the cone bounds a cable only beyond its pulley
-        level = level_geometry(robot, poses)
         is_near |= (level.horizontal_distance_m < 2.0 * robot.pulley_radius_m).any(axis=1)
         bows_out = robot.cable_load_direction is not None
         if bows_out:
@@ -194,6 +197,7 @@ def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -
     says_more &= (of_solver != Verdict.NOT_CONVERGED) & (not bows_out)
     verdict = np.where(says_more, of_solver, verdict)
     verdict[is_near] = Verdict.NOT_CONVERGED
+    verdict[has_no_length] = Verdict.NO_LENGTH
     solution.verdict[unsolved] = verdict
     solution.wrench[unsolved] = np.where(
         are_open(verdict)[:, None],

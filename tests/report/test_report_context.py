@@ -158,16 +158,16 @@ def test_candidates_begin_with_the_chosen_one(reports: dict[str, Report]) -> Non
     best = ("gost-6x19s-iwrc-1960", "steel", "20.5\u00a0mm")
     assert cells(section, "The best size of each grade")[0][:3] == best
     thin = ("unirope-7x19-galvanised", "3/8 in")
-    assert cells(section, "Grades of which no size holds")[0][:2] == thin
+    assert cells(section, "Grades of which no size meets every requirement")[0][:2] == thin
 
 
 def test_every_size_is_accounted_for(analyses, reports: dict[str, Report]) -> None:
-    """Those that no other beats, and those that were rejected, are all there are."""
+    """The chosen one and those that were not chosen are all there are."""
     for case in ("positive", "too_thin", "no_finite_cable"):
         found, section = analyses[case].selection, reports[case].section("selection")
         assert found is not None
-        rejected = sum(int(row[1]) for row in cells(section, "Why the other sizes were rejected"))
-        assert rejected + len(found.front) == len(found.candidates)
+        excluded = sum(int(row[1]) for row in cells(section, "Why the other sizes were not chosen"))
+        assert excluded + (found.chosen is not None) == len(found.candidates)
 
 
 def test_what_each_size_serves(reports: dict[str, Report]) -> None:
@@ -270,6 +270,6 @@ def test_long_rankings_show_their_best_rows_and_say_where_the_rest_is(
     assert "3\u00a0more grades are in candidates.csv." in best.caption
     failing = dataclasses.replace(outcome, outcome="too_thin", best=None)
     few = dataclasses.replace(selection, outcomes=(outcome, *[failing] * 9))
-    thin = table(selection_page(analyses, few), "Grades of which no size holds")
+    thin = table(selection_page(analyses, few), "Grades of which no size meets every requirement")
     assert len(thin.groups[0].rows) == MOST_ROWS
     assert "1\u00a0more grade is in candidates.csv." in thin.caption

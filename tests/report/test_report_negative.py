@@ -65,7 +65,8 @@ def test_pose_outside_the_hull(analyses: dict[str, Analysis]) -> None:
     assert page.verdict.title == "No"
     text = said(page)
     assert "At (250.00, −60.00, −50.00) m no tensions of taut cables hold the platform" in text
-    assert "inside their outline" in text
+    assert "Move the configured pose toward the middle" in text
+    assert "Add a grade" not in text  # one holds the workspace
     assert "stronger" not in text
 
 

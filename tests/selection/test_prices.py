@@ -12,6 +12,7 @@ from designer.grades.grade import Grade
 from designer.model.price_list import Offer, PriceList
 from designer.model.prism import Prism
 from designer.model.workspace import Workspace
+from designer.selection.candidate import Candidate, common_currency, priced
 from designer.selection.prices import BORROWED, with_prices
 from designer.selection.select import best_product, select
 from designer.study import Selection
@@ -121,3 +122,20 @@ def test_the_least_by_the_list_is_chosen(fast_robot) -> None:
     assert found.chosen.figures.cost == pytest.approx(6.0 * length_m)
     unpriced = next(c for c in found.candidates if c.ids == {"grade": "second", "size_id": "30 mm"})
     assert unpriced.standing == "not_comparable"
+
+
+def test_equally_common_currencies_are_settled_alike() -> None:
+    offers = [of("steel"), of("HMPE")]
+    grades = [
+        replace(
+            grade,
+            id=currency,
+            currency=currency,
+            sizes=tuple(replace(size, price_per_m=1.0) for size in grade.sizes),
+        )
+        for grade, currency in zip(offers, ("USD", "EUR"), strict=True)
+    ]
+    candidates = [Candidate(g, s, g.cable(s, 5.0)) for g in grades for s in g.sizes]
+    for order in (1, -1):
+        assert {c.grade.currency for c in priced(candidates[::order])} == {"EUR"}
+        assert common_currency(grades[::order]) == "EUR"

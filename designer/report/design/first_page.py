@@ -14,6 +14,7 @@ from designer.effects.effect import Effect
 from designer.effects.registry import SHIPPED
 from designer.grades.grade import TRUST_MEANING, Grade, Size
 from designer.model.requirement import Requirement, State
+from designer.model.robot import SAG_AT_MOST
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.phrases import orientation_words
@@ -237,13 +238,21 @@ def is_thinnest(analysis: Analysis, what: str) -> bool:
 
 
 def _advice(analysis: Analysis, findings: Findings) -> Context:
-    pose, unserved, workspace = analysis.pose, findings.unserved, analysis.workspace
-    advice = ""
-    if pose is not None and not pose.sizing.statics.is_solved:
-        advice = Verdict(int(pose.sizing.statics.verdict)).advice
+    unserved, workspace = findings.unserved, analysis.workspace
+    outcomes = [] if analysis.selection is None else analysis.selection.outcomes
+    pose = analysis.pose
+    weight = _weight(analysis)
     return {
         "other_grades": [] if findings.adrift else _other_grades(analysis),
-        "pose_advice": advice,
+        "pose_fails": pose is not None and not pose.sizing.statics.is_solved,
+        "some_served": workspace is not None and workspace.sampled is not None,
+        "lacks_strength": not analysis.assignment.is_found
+        and any(outcome.outcome == "too_thin" for outcome in outcomes),
+        "sag_at_most": SAG_AT_MOST,
+        "hangs_by_weight": weight is not None
+        and not weight["is_held_straight"]
+        and any(requirement.id == "sag" for requirement in analysis.unmet),
+        "adrift_cases": [adrift.loaded.case.name for adrift in findings.adrift],
         "is_layer": unserved is not None and _is_layer(analysis, unserved),
         "is_strip": unserved is not None and unserved.depth_m < _STRIP * unserved.inradius_m,
         "not_served": [] if workspace is None else _verdicts_not_served(analysis),

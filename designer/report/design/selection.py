@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from designer.analysis.analyse import Analysis
 from designer.grades.grade import TRUST_MEANING
 from designer.report import format as fmt
 from designer.report.document import MOST_ROWS
 from designer.report.figures.charts_selection import rank
-from designer.selection.candidate import Candidate, Standing
+from designer.selection.candidate import Candidate
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import GradeOutcome, SelectionResult
 
 Context = Mapping[str, object]
 
 _MOST_NAMES = 3
-_EXCLUDED: tuple[Standing, ...] = ("dominated", "too_thin", "not_held", "not_comparable")
 
 
 def selection(analysis: Analysis) -> Context | None:
@@ -57,10 +56,8 @@ def selection(analysis: Analysis) -> Context | None:
         "of_materials_form": _form(of_materials),
         "alternatives": alternatives,
         "alternatives_form": _form(alternatives),
-        "thin": [outcome for outcome in rank(result.outcomes) if outcome.best is None],
-        "excluded": list(_excluded(result)),
-        "not_tried": list(_not_tried(result)),
-        "dominating": _dominating(result),
+        "thin": [outcome for outcome in rank(result.outcomes) if outcome.outcome != "fits"],
+        "dominating": Counter(c.dominated_by.label for c in tried if c.dominated_by).most_common(),
         "most_names": _MOST_NAMES,
         "searched": sum(c.verification.is_refined for c in tried),
     }
@@ -85,28 +82,3 @@ def _form(candidates: Sequence[Candidate]) -> Context:
         "force": fmt.decimals(c.cable.allowable_tension_N / scale for c in shown),
         "mass": fmt.decimals(c.total_mass_kg for c in shown),
     }
-
-
-def _excluded(result: SelectionResult) -> Iterator[tuple[Standing, int, int, Candidate]]:
-    """Yield why sizes were excluded, how many, of how many grades, and the nearest of them."""
-    for standing in _EXCLUDED:
-        excluded = [c for c in result.candidates if c.standing == standing]
-        if excluded:
-            nearest = min(excluded, key=lambda c: c.verification.utilisation)
-            yield standing, len(excluded), len({c.grade.id for c in excluded}), nearest
-
-
-def _not_tried(result: SelectionResult) -> Iterator[tuple[str, int, int, str]]:
-    """Yield why sizes were not solved, how many, of how many grades, and one of these."""
-    for reason in dict.fromkeys(left.reason for left in result.not_tried):
-        same = [left for left in result.not_tried if left.reason == reason]
-        sizes = sum(1 if left.size else len(left.grade.sizes) for left in same)
-        names = [*dict.fromkeys(left.grade.id for left in same)]
-        yield reason, sizes, len(names), names[0]
-
-
-def _dominating(result: SelectionResult) -> list[tuple[str, int]]:
-    """Return who beats how many of the dominated sizes, the most first."""
-    dominated = (c for c in result.candidates if c.standing == "dominated")
-    names = (c.reason.split(";")[0].removeprefix("dominated by ") for c in dominated)
-    return Counter(names).most_common()

@@ -130,10 +130,10 @@ def _ending(axes: Axes, row: int, outcome: GradeOutcome, *, is_chosen: bool) -> 
         mass_kg, colour = outcome.best.total_mass_kg, palette.INK
         mass = canvas.significant(mass_kg, 3)
         text = f"{outcome.best.size.id}, {mass} kg"
-    elif np.isfinite(outcome.continuous_diameter_m):
-        text = f"{outcome.grade.thickest.id} insufficient"
+        if outcome.outcome != "fits":
+            text, colour = f"{text}; {outcome.brief}", palette.WARNING
     else:
-        text = "no section holds"
+        text = outcome.brief
     canvas.note(
         axes, text, (1.0, row), (5, 0), xycoords=("axes fraction", "data"), va="center",
         annotation_clip=False, color=colour, fontweight="bold" if is_chosen else "normal",
