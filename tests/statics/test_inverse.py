@@ -125,7 +125,8 @@ def test_each_verdict_has_a_label_and_a_sentence(verdict) -> None:
     assert verdict.label == verdict.name.lower()
     assert verdict.reason
     assert verdict.sentence.endswith(".")
-    assert getattr(kernel, verdict.name) == int(verdict)
+    if verdict is not Verdict.NO_LENGTH:  # found before the kernel is called
+        assert getattr(kernel, verdict.name) == int(verdict)
 
 
 def test_cables_lighter_than_asked_for_are_no_answer() -> None:
