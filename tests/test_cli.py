@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import subprocess
@@ -12,11 +13,13 @@ from pathlib import Path
 
 import pytest
 
-from designer.cli import terminal
+from designer.cli import commands, terminal
 from designer.cli.commands import main
 from designer.cli.tables import print_grades
 from designer.grades.registry import load_catalogue
+from designer.io.config import read_study
 from designer.report.render import REPORT_FILES
+from designer.resources import example_file, example_names
 
 STUDY = """
 name: small crane
@@ -260,6 +263,38 @@ def test_init_writes_a_study_that_reads(designer) -> None:
     unknown = designer("init", "other.yaml", "--example", "yart")
     assert unknown.status == 2
     assert "yard" in unknown.err
+
+
+@pytest.mark.parametrize(
+    ("answers", "name"), [("\n", "hoist"), ("ten\n0\n1\n", "cogiro"), ("yard\n", "yard")]
+)
+def test_init_asks_on_a_terminal(designer, monkeypatch, answers: str, name: str) -> None:
+    monkeypatch.setattr(commands, "can_ask", lambda: True)
+    monkeypatch.setattr("sys.stdin", io.StringIO(answers))
+    outcome = designer("init", "crane.yaml")
+    assert outcome.status == 0, outcome.err
+    assert all(example in outcome.out for example in example_names())
+    text = Path("crane.yaml").read_text()
+    assert text.endswith(example_file(name).read_text())
+
+
+def test_init_starts_with_a_hoist_in_a_pipe(designer) -> None:
+    assert designer("init").status == 0
+    study = read_study(Path("hoist.yaml"))
+    selection = study.selection
+    assert selection is not None
+    assert (selection.safety_factor, selection.termination_efficiency) == (5.0, 0.9)
+    assert selection.sheave_diameter_m is not None
+    assert all(case.wind is not None for case in study.load_cases)
+
+
+def test_end_of_input_writes_nothing(designer, monkeypatch) -> None:
+    monkeypatch.setattr(commands, "can_ask", lambda: True)
+    monkeypatch.setattr("sys.stdin", io.StringIO(""))
+    outcome = designer("init", "crane.yaml")
+    assert outcome.status == 130
+    assert outcome.err.endswith("Interrupted; nothing was written.\n")
+    assert not Path("crane.yaml").exists()
 
 
 def test_the_shell_completes_commands_and_names() -> None:

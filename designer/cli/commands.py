@@ -23,6 +23,7 @@ from designer.cli.import_robot import import_robot
 from designer.cli.lengths import lengths
 from designer.cli.optimise import optimise
 from designer.cli.options import (
+    INTERRUPTED,
     NEGATIVE_ANSWER,
     WRONG_INPUT,
     Config,
@@ -30,6 +31,7 @@ from designer.cli.options import (
     NoPlugins,
     Template,
     argument,
+    can_ask,
     catalogue_of,
     option,
     output_option,
@@ -47,7 +49,7 @@ from designer.errors import (
     described,
     visible,
 )
-from designer.io.process import readable_output, settle_in
+from designer.io.process import interruption, readable_output, settle_in
 from designer.resources import example_names
 
 if TYPE_CHECKING:
@@ -69,6 +71,9 @@ class Commands(HelpedCommands):
                 answer = super().invoke(ctx)
             except EOFError as error:  # typer would call it aborted, with the status of an answer
                 raise RuntimeError(described(error)) from error
+            except typer.Abort:  # the end of input where something was asked
+                typer.echo(f"\n{interruption()}", err=True)
+                raise typer.Exit(INTERRUPTED) from None
             if answer is False:
                 raise typer.Exit(NEGATIVE_ANSWER)
             return answer
@@ -366,32 +371,45 @@ def init(
         Path | None, argument("PATH", "File to write, EXAMPLE.yaml if left out.")
     ] = None,
     example: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--example",
             metavar="NAME",
-            help="Which study to copy; see --list.",
+            help="Which study to copy; see --list. Left out, a terminal is asked; else the hoist.",
             autocompletion=example_names,
         ),
-    ] = "fast",
+    ] = None,
     lists: Annotated[
         bool, typer.Option("--list", help="Tell what studies there are, and stop.")
     ] = False,
 ) -> None:
     """Write a commented study to start from, and beside it the schema by which editors check it.
 
-    Example:  designer init --example yard my-crane.yaml
+    Of the shipped examples, the one that is nearest to your robot; `fast` explains all fields.
+
+    \b
+    Examples:
+      designer init my-crane.yaml
+      designer init --example fast all-fields.yaml
     """
     from designer.resources import example_file, example_summary
 
+    names = example_names()
+    width = max(map(len, names))
+    summaries = [f"{name:{width}}  {example_summary(name)}" for name in names]
     if lists:
-        width = max(len(name) for name in example_names())
-        for name in example_names():
-            typer.echo(f"{name:{width}}  {example_summary(name)}")
+        typer.echo("\n".join(summaries))
         return
-    if example not in example_names():
-        names = ", ".join(example_names())
-        raise InputError.at("--example", f"there is no example {example!r}", names)
+    if example is None and can_ask():
+        for number, summary in enumerate(summaries, start=1):
+            typer.echo(f"{number:3}  {summary}")
+        while example not in names:
+            answer = typer.prompt("Which is nearest to yours? Number or name", default="hoist")
+            is_number = answer.isdecimal() and 0 < int(answer) <= len(names)
+            example = names[int(answer) - 1] if is_number else answer.strip()
+    example = example or "hoist"
+    if example not in names:
+        raise InputError.at("--example", f"there is no example {example!r}", ", ".join(names))
     target = path or Path(f"{example}.yaml")
     write_with_schema(target, example_file(example).read_text(encoding="utf-8"))
     typer.echo(f"{target} written. Next:  designer report {shlex.quote(str(target))}")

@@ -18,6 +18,7 @@ import numpy as np
 from designer import __version__
 from designer.errors import InputError, OutputError
 from designer.io.output import explained
+from designer.io.process import written
 from designer.sweep.plan import SweepPlan
 
 if TYPE_CHECKING:
@@ -104,6 +105,7 @@ def opened(path: Path, plan: SweepPlan) -> Iterator[Store]:
                 "*.partial"
             ):  # of a run that was killed while it wrote them
                 unfinished.unlink(missing_ok=True)
+            written[path] = None
             yield Store(zarr.open_group(path, mode="r+"), plan)
 
 

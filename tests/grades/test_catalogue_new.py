@@ -338,7 +338,7 @@ def test_what_is_in_doubt_is_asked_for_by_options() -> None:
 
 
 def test_what_is_in_doubt_is_asked_for_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(catalog_new, "_asks", lambda: True)
+    monkeypatch.setattr(catalog_new, "can_ask", lambda: True)
     answers = [
         *("2", "mm", "tons", "kN", "kg/m"),  # which tons, is asked again
         *("", "Acme", "Quarry", "6x36", "IWRC", "bright", "steel", "", "", "", "", "", "", ""),
