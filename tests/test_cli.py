@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -13,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from designer.analysis.analyse import analyse
 from designer.cli import commands, terminal
 from designer.cli.commands import main
 from designer.cli.tables import print_grades
@@ -183,6 +185,22 @@ def test_report_with_nothing_to_solve(designer) -> None:
     told = designer("report", "study.yaml")
     assert told.status == 2
     assert "nothing to solve" in told.err
+
+
+def test_quick_report(designer) -> None:
+    Path("crane.yaml").write_text(STUDY + WORKSPACE)
+    quick = designer("report", "crane.yaml", "--quick")
+    assert (quick.status, quick.out.splitlines()[-1]) == (0, "crane-quick: report.html")
+    page = Path("crane-quick/report.html").read_text()
+    assert "Page 1 alone: no charts, no proof between the samples, no PDF" in page
+    assert page.count("<section") == 1
+    targets = set(re.findall(r'href="#([^"]*)"', page))
+    assert targets <= set(re.findall(r'id="([^"]*)"', page))
+    study = read_study(Path("crane.yaml"))
+    (chosen,) = {row for row in quick.out.splitlines() if row.startswith("│ cable ")}
+    whole = analyse(study).chosen
+    assert whole is not None
+    assert whole.size.id in chosen
 
 
 def test_report_into_a_file(designer) -> None:

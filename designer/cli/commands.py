@@ -144,15 +144,22 @@ def _options(
 def report(
     config: Config,
     output: Annotated[Path | None, output_option("CONFIG-report")] = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Page 1 and the answer alone, into CONFIG-quick.")
+    ] = False,
     template: Template = None,
     no_plugins: NoPlugins = False,
 ) -> bool:
     """Size, sweep the workspace, choose a rope, and write the report.
 
     Writes report.html, report.pdf, result.json, candidates.csv, reactions.csv, workspace.nc
-    and, along a path, path.csv.
+    and, along a path, path.csv. With --quick it tries no proof and writes page 1 alone, without
+    charts, as report.html: for trying out changes in seconds.
 
-    Example:  designer report fast.yaml -o fast-report
+    \b
+    Examples:
+      designer report fast.yaml -o fast-report
+      designer report fast.yaml --quick
 
     Exit status 0: the answer is yes, every requirement holds. 1: it is no, or open, and the report
     says why. 2: the input is wrong, and nothing is written.
@@ -165,19 +172,23 @@ def report(
 
     study, plugins = study_of(config, no_plugins)
     require_answerable(study)
-    folder = output or Path(f"{config.stem}-report")
-    begin_probe()
+    folder = output or Path(f"{config.stem}-{'quick' if quick else 'report'}")
+    if not quick:
+        begin_probe()
     catalogue = catalogue_of(study, plugins)
-    announce_compiling(proves=True)
+    announce_compiling(proves=not quick)
 
-    from designer.analysis.analyse import analyse
+    from designer.analysis.analyse import Analysis, analyse
     from designer.report.render import REPORT_FILES, write_report_files
 
     with output_folder(folder, REPORT_FILES) as building, ProgressBars() as bars:
-        analysis = analyse(study, catalogue, building, bars)
-        write_report_files(analysis, building, template, bars)
+        if quick:
+            analysis = Analysis.begin(study.unproved, catalogue, reporter=bars)
+        else:
+            analysis = analyse(study, catalogue, building, bars)
+        write_report_files(analysis, building, template, bars, quick=quick)
         written = file_names(building)
-    print_left_out(filter(None, [why_no_scenes()]))
+    print_left_out(filter(None, ["" if quick else why_no_scenes()]))
     print_summary(analysis, folder, written)
     return analysis.is_positive
 
