@@ -20,7 +20,7 @@ from designer.cli.catalog import catalog
 from designer.cli.compare import compare
 from designer.cli.export import export
 from designer.cli.import_robot import import_robot
-from designer.cli.lengths import lengths
+from designer.cli.lengths import lengths, pose
 from designer.cli.optimise import optimise
 from designer.cli.options import (
     INTERRUPTED,
@@ -89,6 +89,7 @@ app = typer.Typer(
 )
 app.add_typer(catalog, name="catalog")
 app.command()(lengths)
+app.command()(pose)
 app.command()(compare)
 app.command()(sweep)
 app.command()(optimise)
