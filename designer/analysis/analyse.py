@@ -433,8 +433,10 @@ def analyse(
 
 def finished(analysis: Analysis) -> Analysis:
     """Return an analysis of which every stage is computed: that of a report."""
-    for stage in _STAGES:
-        getattr(analysis, stage)
+    with analysis.reporter.task("stages", len(_STAGES)) as advance:
+        for stage in _STAGES:
+            getattr(analysis, stage)
+            advance(1)
     if analysis.pose is not None:
         _ = analysis.pose.rest
     if analysis.ropes is not None:
