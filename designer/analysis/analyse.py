@@ -9,10 +9,12 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from designer import checked
 from designer.analysis.carries import Carries, carries_of
 from designer.analysis.findings import Findings, find
 from designer.analysis.governing import (
@@ -55,6 +57,9 @@ from designer.workspace.result import WorkspaceMap
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import map_workspace
 
+if TYPE_CHECKING:
+    from designer.report.plot import Plots
+
 
 class TemporaryFolder:
     """A temporary folder that goes when nothing refers to this any more, or after a killed run."""
@@ -80,8 +85,8 @@ def _remove_locked(lock: Any) -> None:
     shutil.rmtree(Path(lock.lock_file).parent, ignore_errors=True)
 
 
-@dataclass(frozen=True, eq=False)
-class Analysis:
+@dataclass(frozen=True, eq=False, repr=False)
+class Analysis(checked.Shown):
     """All that is computed of a study, each stage when it is first read.
 
     Whoever reads the answer alone has nothing computed that does not change it; `analyse` returns
@@ -332,6 +337,25 @@ class Analysis:
         loads = design_loads(self.study, self.built, self.qualities.cable)
         with self.reporter.task("reactions", len(loads)) as advance:
             return reactions_of(loads, advance)
+
+    @property
+    def plot(self) -> Plots:
+        """The figures of the report, as Matplotlib axes and PyVista scenes."""
+        # What draws stands above this room, and is loaded when it is first asked for.
+        plots: Plots = import_module("designer.report.plot").Plots(self)
+        return plots
+
+    def summary(self) -> dict[str, str]:
+        """Return the answer, as far as it is computed already."""
+        if "requirements" not in vars(self):
+            return {"study": self.study.name, "answer": "not computed yet"}
+        count = len(self.requirements)
+        answer = f"{self.answer.value}, {count - len(self.unmet)} of {count} requirements hold"
+        shown = {"study": self.study.name, "answer": answer}
+        if self.chosen is not None:
+            shown["rope"] = self.chosen.name
+            shown["utilisation"] = f"{self.chosen.verification.utilisation:.1%}"
+        return shown
 
     @property
     def sweep_file(self) -> Path | None:

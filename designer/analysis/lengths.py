@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from designer import checked
 from designer.analysis.analyse import Analysis
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.documents.plain import csv_text
@@ -23,8 +24,8 @@ _FULL = 1.0 + 1e-9
 """Utilisation where a cable was made for a pose, with what rounding adds."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Lengths:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Lengths(checked.Shown):
     """What the winches have to pay out.
 
     Parameters
@@ -73,8 +74,8 @@ class Lengths:
         return csv_text(rows)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class FoundPoses:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class FoundPoses(checked.Shown):
     """Every equilibrium that was found on given lengths, stable ones of a row first.
 
     Parameters
@@ -110,17 +111,17 @@ class FoundPoses:
         solution 0, in a row without any.
         """
         tensions = tension_names(self.exit_tension_N.shape[1])
-        found_names = (*POSITION, *ROTATION_VECTOR, *tensions, "is_stable", "solution")
-        lines = [[*names, *found_names]]
-        for row, given in enumerate(values):
-            exactly = ["" if np.isnan(x) else repr(float(x)) for x in given]
-            found = np.flatnonzero(self.row == row)
-            for number, k in enumerate(found, start=1):
+        columns = (*POSITION, *ROTATION_VECTOR, *tensions, "is_stable", "solution")
+        lines = [[*names, *columns]]
+        for row, numbers in enumerate(values):
+            exactly = ["" if np.isnan(x) else repr(float(x)) for x in numbers]
+            of_row = np.flatnonzero(self.row == row)
+            for number, k in enumerate(of_row, start=1):
                 figures = (f"{x:.10g}" for x in (*self.place[k], *self.exit_tension_N[k]))
                 stable = "true" if self.is_stable[k] else "false"
                 lines.append([*exactly, *figures, stable, str(number)])
-            if not len(found):
-                lines.append([*exactly, *[""] * (len(found_names) - 1), "0"])
+            if not len(of_row):
+                lines.append([*exactly, *[""] * (len(columns) - 1), "0"])
         return csv_text(lines)
 
 

@@ -18,6 +18,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
+from designer import checked
 from designer.arrays import FloatArray, IntArray
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
@@ -49,8 +50,8 @@ _NEAR = 0.01
 """Relative: how close searches that end at the same place come on their way."""
 
 
-@dataclass(frozen=True, eq=False)
-class CaseResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class CaseResult(checked.Shown):
     """What a cable meets in one load case, or in one direction of it.
 
     Parameters

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
+from designer import checked
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Material
 from designer.model.load_case import STATIC
@@ -101,8 +102,8 @@ class GradeOutcome:
         return f"is insufficient in its largest size sold, {self.grade.thickest.id}, {need}"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SelectionResult:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SelectionResult(checked.Shown):
     """The choice, and why.
 
     Parameters

@@ -19,7 +19,7 @@ from designer import __version__
 from designer.errors import InputError, OutputError
 from designer.io.output import explained
 from designer.io.process import written
-from designer.sweep.plan import SweepPlan
+from designer.sweeps.plan import SweepPlan
 
 if TYPE_CHECKING:
     import xarray as xr
