@@ -1,4 +1,4 @@
-"""The name that was probably meant; row numbers in words."""
+"""Plain text of a place, a mass, row numbers; the name that was probably meant."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from difflib import get_close_matches
 
 import numpy as np
 
-from designer.arrays import IntArray
+from designer.arrays import FloatArray, IntArray
 
 
 def nearest_name(text: str, names: Iterable[str]) -> str | None:
@@ -35,3 +35,22 @@ def in_runs(numbers: Sequence[int] | IntArray) -> list[str]:
     """Return numbers with neighbours drawn together: ``12``, ``45 to 48``."""
     runs = np.split(np.asarray(numbers), np.flatnonzero(np.diff(numbers) > 1) + 1)
     return [str(run[0]) if len(run) == 1 else f"{run[0]} to {run[-1]}" for run in runs]
+
+
+def position(place: Iterable[float]) -> str:
+    """Return a place [m, rad] as plain text, such as ``(256.52, 10.35, -40) m``.
+
+    The orientation follows in degrees, where it is not zero.
+    """
+    position_m, turn_rad = np.split(np.array([*place], dtype=np.float64), [3])
+    text = f"({_decimal(position_m)}) m"
+    return f"{text}, turned by ({_decimal(np.degrees(turn_rad))})°" if turn_rad.any() else text
+
+
+def _decimal(values: FloatArray) -> str:
+    return ", ".join(f"{value + 0.0:.10g}" for value in np.round(values, 2))
+
+
+def kilograms(mass_kg: float) -> str:
+    """Return a mass as plain text with four digits, such as ``21250 kg``."""
+    return f"{float(f'{mass_kg:.3e}'):.10g} kg"

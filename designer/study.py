@@ -14,7 +14,7 @@ from designer.effects.design import AsBuilt, built_with
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED, KnownEffects
 from designer.errors import Fault, InputError, MissingLibraryError
-from designer.model.cable import Material
+from designer.model.cable import Material, MaterialName, Trust
 from designer.model.duty import RUNNING_ROPE, SOURCE, DutyClass
 from designer.model.load_case import EACH, LoadCase
 from designer.model.machine import TEMPERATE, Machine, Surroundings
@@ -112,6 +112,10 @@ class Selection:
         How many bends ropes bear, and how many they shall.
     price_list : PriceList or None
         Offers that come before the prices of grades.
+    trust : str
+        The lowest trust of figures that is tried, of grades that the study does not name.
+    materials : tuple of str
+        Materials to consider; empty for all.
     """
 
     grades: tuple[str, ...] | None = None
@@ -125,6 +129,8 @@ class Selection:
     duty_class: DutyClass = "none"
     rope_life: RopeLife | None = None
     price_list: PriceList | None = None
+    trust: Trust = "B"
+    materials: tuple[MaterialName, ...] = ()
 
     def __post_init__(self) -> None:
         checked.check_fields(self)

@@ -69,5 +69,5 @@ def family_grade(
         modulus=Modulus(youngs_modulus_Pa, "nominal", "computed", "made up for a test", 0.0),
         sizes=tuple(sizes),
         source=Reference("nobody", "a test"),
-        trust="C",
+        trust="B",
     )

@@ -28,9 +28,9 @@ from designer.analysis.path import PathAnalysis, path_of, path_requirements
 from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.analysis.provenance import Provenance
 from designer.analysis.reactions import Reaction, reactions_of
-from designer.analysis.requirements import design_loads, requirements_of
+from designer.analysis.requirements import Terms, design_loads, requirements_of, terms_of
 from designer.analysis.sensitivities import Sensitivities, group_sensitivities
-from designer.analysis.uncertainty.uncertainty import UncertaintyAnalysis, uncertainty_of
+from designer.analysis.uncertainty import UncertaintyAnalysis, uncertainty_of
 from designer.analysis.verification import SecondAnswer, second_answers
 from designer.documents.plain import lies_in
 from designer.effects.design import AsBuilt
@@ -397,6 +397,18 @@ class Analysis(checked.Shown):
         """Whether the answer is yes."""
         return self.answer is Answer.YES
 
+    @cached_property
+    def terms(self) -> Terms:
+        """What the answer covers, what was not asked, and what a yes is subject to."""
+        return terms_of(self)
+
+    @property
+    def own_material(self) -> str | None:
+        """Material of the configured family; of one by its figures steel or not known."""
+        if self.study.family is not None:
+            return self.catalogue.grade(self.study.family.grade).material
+        return "steel" if self.study.material.density_kg_per_m3 > _METAL_KG_PER_M3 else None
+
     @property
     def unmet(self) -> tuple[Requirement, ...]:
         """Requirements that fail, then those of which it is not known."""
@@ -414,13 +426,15 @@ class Analysis(checked.Shown):
         return self.selection.chosen if self.selection is not None else None
 
 
+_METAL_KG_PER_M3 = 2500.0
+"""Over the nominal circle: of wire ropes 3800 at least, of fibre ropes 1640 at most."""
 _TELLS_NO_GRADES = re.compile(
     r"(name|positive|answer|pose|workspace|load_cases"
     r"|selection\.chosen(?!\.(continuous_diameter_m|outcome)$))(\.|$)"
 ).match
 """Whether a path of ``result.json`` is told by the chosen rope alone."""
 _STAGES = (
-    *("pose", "workspace", "selection", "groups", "needs", "qualities", "requirements"),
+    *("pose", "workspace", "selection", "groups", "needs", "qualities", "requirements", "terms"),
     *("path", "reactions", "verification", "carries", "group_slopes", "servable", "uncertainty"),
     *("worst_sizing", "outside", "governing", "findings", "modes"),
 )

@@ -7,7 +7,9 @@ cable below the platform count, or not? How wide is the strip that cannot be ser
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
+from statistics import mean
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -186,6 +188,26 @@ def modulus_utilisation(candidate: Candidate) -> tuple[float, float]:
         return governing.tension_N(replace(loaded, cable=stretched)) / cable.allowable_tension_N
 
     return at(1.0 - doubt), at(1.0 + doubt)
+
+
+def neighbours_utilisation(candidate: Candidate) -> tuple[list[Size], float]:
+    """Return the sizes beside one in its table, and what it is used to if it were as they are.
+
+    With their breaking load and mass over d², at its worst pose. A size that the catalogue doubts
+    is no neighbour.
+    """
+    size, governing, sizes = candidate.size, candidate.governing, candidate.grade.sizes
+    thinner = [s for s in sizes if s.diameter_m < size.diameter_m and not s.doubt][-1:]
+    beside = thinner + [s for s in sizes if s.diameter_m > size.diameter_m and not s.doubt][:1]
+    if not beside:
+        return [], math.nan
+    strength = mean(s.breaking_stress_Pa for s in beside) / size.breaking_stress_Pa
+    mass = mean(s.density_kg_per_m3 for s in beside) / size.density_kg_per_m3
+    robot, cable = governing.loaded.bare
+    allowable_N = strength * cable.allowable_tension_N
+    alike = replace(cable.with_rope_scaled(mass), allowable_tension_N=allowable_N)
+    loaded = governing.loaded.on(robot, alike)
+    return beside, governing.tension_N(loaded) / loaded.cable.allowable_tension_N
 
 
 def _massless_choice(analysis: Analysis, outcome: GradeOutcome) -> MasslessChoice | None:

@@ -4,24 +4,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from designer.analysis.findings import neighbours_utilisation
 from designer.analysis.pose import PoseAnalysis
 from designer.effects.design import AsBuilt
-from designer.model.cable import Cable
+from designer.grades.grade import TRUST_MEANING
+from designer.model.cable import Cable, Cables
 from designer.model.load_case import STATIC, Loaded
-from designer.model.requirement import Requirement, State
+from designer.model.requirement import Answer, Requirement, State
 from designer.model.verdict import Verdict
 from designer.progress import Reporter
 from designer.selection.assignment import Assignment
+from designer.selection.candidate import Candidate
 from designer.selection.criteria import criteria_of, rope_diameter_m
 from designer.selection.family_need import CaseNeed
 from designer.selection.groups.result import GroupChoice
 from designer.selection.qualities import DesignCable
 from designer.selection.requirements import (
     CaseLoads,
+    at_place,
     drum_of,
     equilibrium_of,
     evaluate,
@@ -32,10 +37,59 @@ from designer.selection.result import SelectionResult
 from designer.selection.spooling import spooling_of
 from designer.sizing.newton import size_poses
 from designer.study import Selection, Study
+from designer.workspace.demand import tension_demand
 from designer.workspace.result import WorkspaceMap
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """What has to be certified of a rope before a yes stands, and why.
+
+    ``neighbours`` are the sizes beside it in its table, ``by_neighbours`` what it is used to if it
+    were as strong and as heavy as they are, over d²; NaN where there are none, and for groups.
+    """
+
+    what: str
+    why: str
+    neighbours: tuple[str, ...] = ()
+    by_neighbours: float = math.nan
+
+    @property
+    def sentences(self) -> str:
+        """Why, and what the neighbours say."""
+        words = f"{self.why[:1].upper()}{self.why[1:]}."
+        if not self.neighbours:
+            return words
+        beside = f"as strong and as heavy over d² as {' and '.join(self.neighbours)} beside it"
+        excess = ", which is too much" if self.by_neighbours > 1.0 else ""
+        return f"{words} Were it {beside}, it would be used to {self.by_neighbours:.1%}{excess}."
+
+
+@dataclass(frozen=True, slots=True)
+class Terms:
+    """What an answer covers, what was not asked, and what a yes is subject to."""
+
+    covers: str
+    not_asked: tuple[str, ...]
+    subject_to: tuple[Condition, ...] = ()
+
+    def head(self, answer: Answer) -> str:
+        """Return the answer in a line: what a yes is subject to, and what it covers."""
+        if answer is not Answer.YES:
+            return answer.value.capitalize()
+        certificates = " and ".join(condition.what for condition in self.subject_to)
+        subject = f", subject to {certificates}" if certificates else ""
+        return f"Yes{subject}, for {self.covers}"
+
+    def omissions(self, answer: Answer) -> str:
+        """Return the sentence of what a yes does not cover; nothing for another answer."""
+        if answer is not Answer.YES or not self.not_asked:
+            return ""
+        return f"Not asked: {', '.join(self.not_asked)}."
+
 
 _FAMILY = "a cable of the configured family holds"
 
@@ -65,6 +119,117 @@ def requirements_of(analysis: Analysis) -> tuple[Requirement, ...]:
     if design is not None and (study.selection is None or assignment.has_groups):
         requirements += _of_design(study, built, design, analysis.reporter)
     return tuple(requirements)
+
+
+def terms_of(analysis: Analysis) -> Terms:
+    """Return what the answer covers and what it is subject to."""
+    study, cases = analysis.study, analysis.study.load_cases
+    moves = study.robot.platform.motion is not None
+    covers = "one static case"
+    if cases:
+        covers = "one load case" if len(cases) == 1 else f"{len(cases)} load cases"
+    elif moves or study.workspace is None:
+        covers = "the motion along the path" if moves else "one pose at rest"
+    subject_to = tuple(_conditions(analysis)) if analysis.answer is Answer.YES else ()
+    return Terms(covers, tuple(_not_asked(study, moves)), subject_to)
+
+
+def _not_asked(study: Study, moves: bool) -> Iterator[str]:
+    """Yield which loads and losses of strength a study says nothing of."""
+    cases, selection = study.load_cases, study.selection
+    given = {entry.field for entry in study.source.entries if entry.given != "default"}
+    loads = {
+        "wind": any(case.wind is not None for case in cases),
+        "dynamics": moves
+        or any(case.dynamic_factor > 1.0 or case.acceleration_m_per_s2 for case in cases),
+        "ice": any(case.ice is not None for case in cases),
+        "loss of a cable": any(case.cable_lost for case in cases),
+        "change of temperature": any(case.temperature_change_K for case in cases),
+    }
+    yield from (name for name, is_asked in loads.items() if not is_asked)
+    if selection is None:
+        return
+    shares = {selection.termination_efficiency, *(case.termination_efficiency for case in cases)}
+    if "selection.termination_efficiency" not in given and shares <= {None, 1.0}:
+        yield "end fittings"
+    if selection.sheave_diameter_m is None and study.robot.winches.reeving_efficiency == 1.0:
+        yield "sheaves"
+
+
+def _conditions(analysis: Analysis) -> Iterator[Condition]:
+    """Yield what has to be certified of each rope that was chosen."""
+    undecided = _undecided(analysis)
+    for rope in analysis.assignment.products:
+        grade, elasticity, doubt = rope.grade, rope.grade.elasticity, rope.size.doubt
+        reasons = []
+        if grade.trust == "C":
+            reasons.append(f"its figures are of trust C, {TRUST_MEANING['C']}")
+        if doubt:
+            reasons.append(f"the catalogue doubts this size: {doubt}")
+        if grade.maker is None:
+            reasons.append(f"no maker is named, its table is of {grade.source.publisher}")
+        certified = ["breaking load", "mass"] if reasons else []
+        if undecided and elasticity.basis == "borrowed":
+            within = f"borrowed, known to ±{elasticity.uncertainty:.0%}"
+            titles = ", ".join(title.lower() for title in undecided)
+            reasons.append(f"its modulus is {within}: at an end of that this fails: {titles}")
+            certified.append("modulus")
+        if reasons:
+            alone = not analysis.assignment.has_groups
+            beside, utilisation = neighbours_utilisation(rope) if alone else ([], math.nan)
+            *first, last = certified
+            figures = f"{', '.join(first)} and {last}" if first else last
+            yield Condition(
+                f"a certificate of {figures} of {rope.label}",
+                "; ".join(reasons),
+                tuple(size.id for size in beside),
+                utilisation,
+            )
+
+
+def _undecided(analysis: Analysis) -> list[str]:
+    """Return the titles of what fails at the ends of what is known of borrowed moduli.
+
+    Each requirement where it comes nearest to failing.
+    """
+    study, assignment = analysis.study, analysis.assignment
+    borrows = any(rope.grade.elasticity.basis == "borrowed" for rope in assignment.ropes)
+    if not borrows or study.workspace is None:
+        return []
+    criteria = criteria_of(analysis.built.robot, study.workspace, study.selection)
+    by_id, failing = {criterion.id: criterion for criterion in criteria}, {}
+    for requirement in analysis.requirements:
+        place, known = requirement.place, requirement.loaded
+        if place is None or known is None:
+            continue
+        workspace = study.workspace.of_case(known.case)
+        for sign in (-1.0, 1.0):
+            loaded = replace(known, cable=_stretched(assignment, known.cable, sign))
+            if requirement.id == "breaking_load":
+                largest_N = tension_demand(loaded, "include", place[None])[0]
+                fails = largest_N > loaded.cable.allowable_tension_N
+            elif criterion := by_id.get(requirement.id):
+                evaluated = at_place(criterion, loaded, workspace, place)
+                fails = evaluated is not None and evaluated.state is State.FAILS
+            else:
+                continue
+            if fails:
+                failing[requirement.title] = True
+    return [*failing]
+
+
+def _stretched(assignment: Assignment, cable: Cable, sign: float) -> Cable:
+    """Return a cable, or those of groups, at an end of what is known of a borrowed modulus."""
+
+    def at_end(rope: Candidate, cable: Cable) -> Cable:
+        elasticity = rope.grade.elasticity
+        doubt = elasticity.uncertainty if elasticity.basis == "borrowed" else 0.0
+        return replace(cable, axial_stiffness_N=(1.0 + sign * doubt) * cable.axial_stiffness_N)
+
+    if isinstance(cable, Cables):
+        ends = map(at_end, assignment.by_cable, cable.each)
+        return cast(Cable, Cables(tuple(ends)))  # which has the same figures as arrays
+    return at_end(assignment.ropes[0], cable)
 
 
 def _pose(pose: PoseAnalysis) -> Requirement:

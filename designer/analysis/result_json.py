@@ -13,7 +13,6 @@ from designer.analysis.fabrication import spooled_of
 from designer.analysis.modes import PlatformModes
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.selection_json import selection_dict
-from designer.analysis.uncertainty.uncertainty import uncertainty_dict
 from designer.documents.plain import RESULT_FORMAT, Json, lies_in, plain, record
 from designer.model.space import named_place
 from designer.model.verdict import Verdict
@@ -44,13 +43,15 @@ def result_dict(analysis: Analysis) -> Json:
             "inputs": {entry.field: entry.value_SI for entry in study.source.entries},
             "pose": _pose(study, analysis.pose, is_read("pose.rest")),
             "workspace": _workspace(analysis),
-            "selection": selection_dict(selection, analysis.groups),
+            "selection": selection_dict(selection, analysis.groups, analysis.own_material),
             **load_cases_dict(analysis),
             **carries_dict(
                 analysis.carries if carries else None, analysis.group_slopes if carries else ()
             ),
-            "uncertainty": uncertainty_dict(
-                analysis.uncertainty if is_read("uncertainty") else None
+            "uncertainty": (
+                analysis.uncertainty.to_dict()
+                if is_read("uncertainty") and analysis.uncertainty is not None
+                else None
             ),
             **(_modes(analysis.modes if is_read("modes") or is_read("modes_at") else None)),
             "path": _path(analysis),
@@ -114,7 +115,14 @@ def _answer(analysis: Analysis) -> Json:
         {"id": requirement.id, "load_case": requirement.load_case, "state": requirement.state.value}
         for requirement in analysis.unmet
     ]
-    return {"verdict": analysis.answer.value, "reasons": reasons, **_products(analysis)}
+    return {
+        "verdict": analysis.answer.value,
+        "covers": analysis.terms.covers,
+        "not_asked": analysis.terms.not_asked,
+        "subject_to": analysis.terms.subject_to,
+        "reasons": reasons,
+        **_products(analysis),
+    }
 
 
 def _products(analysis: Analysis) -> Json:

@@ -22,7 +22,9 @@ _LISTS = {
 """Columns of ``candidates.csv`` that one key becomes, numbered from 1."""
 
 
-def selection_dict(selection: SelectionResult | None, choice: GroupChoice | None) -> Json | None:
+def selection_dict(
+    selection: SelectionResult | None, choice: GroupChoice | None, own_material: str | None
+) -> Json | None:
     """Return everything that ``result.json`` holds of a choice; None where none was to be made."""
     if selection is None:
         return None
@@ -31,7 +33,7 @@ def selection_dict(selection: SelectionResult | None, choice: GroupChoice | None
         for o in (*selection.outcomes, *selection.alternatives)
         for c in o.candidates
     }
-    chosen, usable = selection.chosen, selection.usable
+    chosen, usable, untrusted = selection.chosen, selection.usable, selection.untrusted
     return {
         "objectives": selection.objectives,
         "currency": selection.currency,
@@ -39,6 +41,13 @@ def selection_dict(selection: SelectionResult | None, choice: GroupChoice | None
         "price_list": selection.price_list and _prices(selection.price_list),
         "chosen": None if chosen is None else rows[chosen],
         "reason": selection.reason,
+        "best_of_materials": [
+            {"material": c.grade.material} | rows[c]
+            for c in selection.best_of_materials(own_material)
+        ],
+        "untrusted": untrusted
+        and {**untrusted.ids, "total_mass_kg": untrusted.total_mass_kg}
+        | {"cost": untrusted.figures.cost},
         "pareto": [rows[c] for c in selection.front],
         "candidates": [rows[c] for c in selection.candidates],
         "not_tried": selection.not_tried,

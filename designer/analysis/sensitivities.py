@@ -279,15 +279,15 @@ def payload_scaled(loaded: Loaded, factor: float) -> Loaded:
     """Return its load case with that, and what it is put on, to be put on."""
     (robot, cable), case = loaded.bare, loaded.case
     body = robot.platform
-    wrench = body.wrench_N if case.wrench_N is None else case.wrench_N
+    wrench, offset = factor * case.wrench_on(body), factor * body.wrench_offset_N
     inertia = body.inertia_kg_m2 if case.inertia_kg_m2 is None else case.inertia_kg_m2
-    scaled = replace(body, mass_kg=factor * case.mass_on(body))
+    scaled = replace(body, mass_kg=factor * case.mass_on(body), wrench_offset_N=offset)
     if body.motion is not None and inertia is not None:
         case = replace(case, inertia_kg_m2=None)
         scaled = replace(scaled, inertia_kg_m2=factor * inertia)
     robot = replace(robot, platform=scaled)
     if case.wrench_set is None or loaded.wrench_N is None:
-        case = replace(case, mass_kg=None, wrench_N=factor * wrench)
+        case = replace(case, mass_kg=None, wrench_N=wrench - offset)
         return replace(loaded, case=case, bare=(robot, cable))
     case = replace(case, mass_kg=None, wrench_set=case.wrench_set.scaled(factor))
     return replace(loaded, case=case, bare=(robot, cable), wrench_N=factor * loaded.wrench_N)

@@ -14,7 +14,7 @@ from designer.cli.terminal import bare_table, show
 from designer.grades.grade import TYPICAL_LOAD_FRACTION, Grade
 from designer.grades.listing import facts
 from designer.model.load_case import STATIC
-from designer.spelling import in_runs
+from designer.spelling import in_runs, kilograms, position
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
@@ -95,12 +95,8 @@ def _summary_of_workspace(workspace: WorkspaceMap) -> Iterator[Row]:
         yield "worst pose", bad(f"none: no cable was found that serves {part} of it")
     for label, extreme in (("worst pose", workspace.sagging), ("  massless", workspace.massless)):
         if extreme is not None:
-            at = ", ".join(f"{round(x, 9) + 0.0:.4g}" for x in extreme.position_m)
-            text = f"{_extreme(extreme.diameter_m, extreme.max_tension_N)} at ({at}) m"
-            turn_deg = np.degrees(extreme.rotation_vector_rad)
-            if turn_deg.any():
-                text += f", turned by ({', '.join(f'{x:.3g}' for x in turn_deg)})°"
-            yield label, text
+            text = _extreme(extreme.diameter_m, extreme.max_tension_N)
+            yield label, f"{text} at {position(extreme.place)}"
     if workspace.massless is None and not census.is_all_left_out:
         yield "  massless", "none: straight cables do not hold every pose"
     for name, count in census.statuses.items():
@@ -134,12 +130,16 @@ def _summary_of_selection(
     for result in chosen.cases:
         if result.case is not STATIC:
             verification, cable = result.verification, result.most_used
-            at = ", ".join(f"{x:.4g}" for x in verification.worst_place[:3])
             more = f"; {escape(result.loaded.words)}" if result.loaded.words else ""
             tension = f"{verification.max_tension_N / 1e3:.4g} kN"
             used = f"{verification.utilisation:.1%}, cable {cable} with {tension}"
-            yield f"  {escape(result.case.name)}", f"{used}, at ({at}) m{more}"
-    mass = f"{chosen.cable.rope_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
+            yield (
+                f"  {escape(result.case.name)}",
+                f"{used}, at {position(verification.worst_place[:3])}{more}",
+            )
+    mass = (
+        f"{chosen.cable.rope_density_kg_per_m:.4g} kg/m, {kilograms(chosen.total_mass_kg)} in all"
+    )
     yield "  mass", mass
     if chosen.cable.attached:
         masses = (f"{line.linear_density_kg_per_m:.4g}" for line in chosen.cable.attached)
@@ -151,16 +151,19 @@ def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:
     interference = None if analysis.qualities is None else analysis.qualities.interference
     if interference is not None and interference.worst is None:
         yield "clearance", "nothing to compare: all cables meet at the platform"
-    answer = analysis.answer.value
-    count = len(analysis.requirements)
-    yield "[bold]answer[/]", f"[bold]{answer}[/], {count - len(analysis.unmet)} of {count} hold"
+    terms, answer, count = analysis.terms, analysis.answer, len(analysis.requirements)
+    head = f"[bold{' yellow' if terms.subject_to else ''}]{escape(terms.head(answer))}[/]"
+    yield "[bold]answer[/]", f"{head}; {count - len(analysis.unmet)} of {count} hold"
+    if omissions := terms.omissions(answer):
+        yield "", escape(omissions)
+    for condition in terms.subject_to:
+        yield "  subject to", escape(f"{condition.what}. {condition.sentences}")
     for requirement in analysis.unmet:
         labels = [] if requirement.cable is None else [f"cable {requirement.cable}"]
         if requirement.load_case != "all":
             labels.insert(0, f"'{requirement.load_case}'")
         if requirement.place is not None:
-            at = ", ".join(f"{x:.4g}" for x in requirement.place[:3])
-            labels.append(f"at ({at}) m")
+            labels.append(f"at {position(requirement.place[:3])}")
         words = f"{requirement.words}; {', '.join(labels)}" if labels else requirement.words
         yield f"  {requirement.title.lower()}", bad(escape(words))
 
@@ -179,9 +182,11 @@ def _summary_of_groups(choice: GroupChoice, selection: SelectionResult | None) -
     if choice.saving_kg is not None and abs(choice.saving_kg) < 1e-6:
         saving = ", as with one product for all"
     elif choice.saving_kg is not None:
-        saving = f", {abs(choice.saving_kg):.4g} kg {'less' if choice.saving_kg > 0.0 else 'more'}"
+        saving = (
+            f", {kilograms(abs(choice.saving_kg))} {'less' if choice.saving_kg > 0.0 else 'more'}"
+        )
     gap = "proved least" if choice.proof == "optimal" else f"gap {choice.gap:.2%}"
-    mass = f"{chosen.total_mass_kg:.4g} kg in all{saving}"
+    mass = f"{kilograms(chosen.total_mass_kg)} in all{saving}"
     if choice.objective == "mass":
         yield "  groups' mass", f"{mass}; {gap}"
     else:  # what is proved is told of what was minimised
@@ -245,7 +250,15 @@ def figure(value: float, decimals: int) -> str:
 
 
 def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) -> None:
-    """Print the short table at the end of ``designer diagnose``."""
+    """Print the verdict, and the short table at the end of ``designer diagnose``."""
+    errors = [
+        f"{kind.name} error {kind.scale * before.heldout.value:.3g} → "
+        f"{kind.scale * after.heldout.value:.3g} {kind.unit}"
+        for kind, before, after in diagnosis.errors
+    ]
+    words = diagnosis.verdict.value.replace("nothing_to_find", "agrees").replace("_", " ")
+    answer = f"{words}: {', '.join(errors)} on unseen rows"
+    show(answer if diagnosis.is_positive else bad(answer))
     _print_rows(diagnosis.study.name, [*_found(diagnosis), *_bettered(diagnosis)])
     _print_written(folder, written)
 
@@ -267,24 +280,26 @@ def _found(diagnosis: Diagnosis) -> Iterator[Row]:
         yield f"[bold]{escape(finding.effect.key)}[/]", escape(values)
         if finding.rivals or diagnosis.has_no_rivals(finding):
             yield "  or", escape(", ".join(finding.rivals) or "none in the list")
+    if diagnosis.is_smooth:
+        yield "together", "may be one cause that goes smoothly with the place"
     if not diagnosis.findings:
         yield "effects", "none found"
-    for effect in diagnosis.not_tried:
-        yield bad("no time for"), escape(effect)
-    for event in diagnosis.structure_after.events:
-        yield bad("unexplained"), escape(f"goes with {event.text}")
-    for carrier in diagnosis.structure_after.present[:1]:
-        share = f"{carrier.fraction_of_variance:.0%} of its variance"
-        yield bad("unexplained"), escape(f"goes with {carrier.name}, {share}")
-        if place := diagnosis.left_in:
-            yield "  most in", escape(f"{place.reading}, rows {', '.join(in_runs(place.rows))}")
-    if diagnosis.is_scattered:
-        times = max(diagnosis.scatter.values())
-        yield bad("scatter"), f"{times:.2g} times the noise: more than the sensors explain"
-    for doubt in diagnosis.doubts:
-        yield bad("not plausible"), escape(doubt)
-    for gone in diagnosis.withdrawn:
-        yield "withdrawn", escape(f"{gone.effect}: {gone.reason.value}")
+    structure, place = diagnosis.structure_after, diagnosis.left_in
+    goes_with = [e.text for e in structure.events]
+    goes_with += [
+        f"{c.name}, {c.fraction_of_variance:.0%} of its variance" for c in structure.present[:1]
+    ]
+    times = f"{max(diagnosis.scatter.values(), default=0.0):.2g} times the noise"
+    for label, texts in (
+        (bad("no time for"), diagnosis.not_tried),
+        (bad("unexplained"), [f"goes with {text}" for text in goes_with]),
+        ("  most in", [f"{place.reading}, rows {', '.join(in_runs(place.rows))}"] if place else []),
+        ("  check next", diagnosis.next_checks),
+        (bad("scatter"), [f"{times}: more than the sensors explain"] * diagnosis.is_scattered),
+        (bad("not plausible"), diagnosis.doubts),
+        ("withdrawn", [f"{gone.effect}: {gone.reason.value}" for gone in diagnosis.withdrawn]),
+    ):
+        yield from ((label, escape(text)) for text in texts)
 
 
 def _bettered(diagnosis: Diagnosis) -> Iterator[Row]:
@@ -292,6 +307,8 @@ def _bettered(diagnosis: Diagnosis) -> Iterator[Row]:
     for kind, *errors in diagnosis.errors:
         was, now = (kind.scale * error.heldout.value for error in errors)
         yield f"{kind.name} error", f"{was:.3g} → {now:.3g} {kind.unit} on unseen rows"
+    if diagnosis.left_out:
+        yield "  left out", diagnosis.left_out
     for each in diagnosis.sessions:
         is_strange = each.session in diagnosis.strange_sessions
         why = f": {bad('not explained by the machine that others fit')}" * is_strange

@@ -98,7 +98,16 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     """
     measurements = _less_estimated_noise(measurements, measured)
     # The diagnosis asks no strength of the cable, and only laws of plugins ask its diameter.
-    machine = Machine(study.robot.at_rest, measurements.cable(), surroundings=study.surroundings)
+    rope = measurements.cable()
+    density = study.material.density_kg_per_m3
+    if measurements.diameter_m is not None:
+        density = rope.linear_density_kg_per_m / (0.25 * math.pi * measurements.diameter_m**2)
+    machine = Machine(
+        study.robot.at_rest,
+        rope,
+        surroundings=study.surroundings,
+        rope_density_kg_per_m3=float(density),
+    )
     declared = declared_settings(study, machine)
     built = as_built(machine, declared)
     if not measured.has_poses and np.isnan(measured.poses.position_m).any():

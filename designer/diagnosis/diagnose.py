@@ -33,12 +33,22 @@ from designer.diagnosis.proposals import Proposal, propose
 from designer.diagnosis.result import Diagnosis, Estimate, Finding
 from designer.diagnosis.search import without
 from designer.diagnosis.statistics import heldout_rows, without_outliers
-from designer.diagnosis.structure import covariates_of, smooth_correction, whereabouts
+from designer.diagnosis.structure import (
+    covariates_of,
+    is_one_smooth_error,
+    smooth_correction,
+    whereabouts,
+)
 from designer.effects.effect import Effect
+from designer.effects.platform_force import EFFECT as FORCE
+from designer.effects.poses import DISTORTION
 from designer.errors import EffectError
 from designer.model.measured_data import Measured
 from designer.progress import Pace
 from designer.study import Study
+
+_ALIKE = 0.15
+"""Spread of the zeros of all load cells over their mean below which they have one cause."""
 
 
 def diagnose_study(
@@ -131,7 +141,16 @@ def _told(
     compared = heldout & with_sound_lengths(problem, last)
     covariates = covariates_of(measured, problem.surroundings(last))
     rivals = {e.key: _rivals(outcome, e) for e in outcome.found}
-    findings = tuple(_finding(outcome, e, gains[e.key], rivals[e.key]) for e in outcome.found)
+    shared: dict[str, tuple[Effect, ...]] = {}
+    is_several = len(outcome.found) > 2 and case.measured.has_poses
+    if is_several and is_one_smooth_error(before, after, measured.poses.position_m, heldout):
+        # A force that changes with the place, where tensions were read.
+        cause = DISTORTION if np.isnan(measured.tension_N).all() else FORCE
+        shared = {cause.id: (cause,)}
+    findings = tuple(
+        _finding(outcome, e, gains[e.key], rivals[e.key] | shared) for e in outcome.found
+    )
+    findings = _with_one_force(findings)
     structure = with_given_up(outcome.structure, after, problem.residual(()), measured.row_numbers)
     trend = correction = None
     if structure.present:
@@ -199,6 +218,18 @@ def _with_settled_noise(case: Case, rows: BoolArray, progress: Pace) -> Outcome:
     return outcome
 
 
+def _with_one_force(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    """Return several findings with a force as rival of all, if it is of all but the ropes' mass.
+
+    One that changes with the place: a constant one does what most of them do, and heavier ropes
+    pull the more, the farther away the platform is.
+    """
+    others = {finding.effect.id for finding in findings if FORCE.id not in finding.rivals}
+    if len(findings) < 3 or others != {"linear_mass"}:
+        return findings
+    return tuple(replace(f, rivals=tuple(dict.fromkeys([*f.rivals, FORCE.id]))) for f in findings)
+
+
 def _rivals(outcome: Outcome, effect: Effect) -> dict[str, tuple[Effect, ...]]:
     """Return what may stand in place of a finding, by what it is called."""
     rivals = outcome.searcher.rivals(outcome.found, effect, outcome.fit, outcome.steps)
@@ -215,6 +246,10 @@ def _finding(
         if not p.is_shape
     )
     doubt = "no value of it is further from doing nothing than twice its standard deviation"
+    offsets = [each.value for each in estimate.values()] if effect.id == "tension_bias" else []
+    is_alike = len(offsets) > 2 and bool(np.std(offsets) < _ALIKE * abs(np.mean(offsets)))
+    common = "all cells are off alike, as by a force that all cables share"
+    force = [FORCE.id] * (is_alike and FORCE.id not in rivals)
     set_up = [
         name
         for name, together in rivals.items()
@@ -223,10 +258,10 @@ def _finding(
     return Finding(
         effect=effect,
         parameters=estimate,
-        rivals=tuple(rivals),
+        rivals=(*rivals, *force),
         heldout_gain=gain.share,
         heldout_gain_std=gain.std,
-        warnings=(doubt,) * is_near,
+        warnings=(*[doubt] * is_near, *[common] * is_alike),
         rule_out=tuple(set_up),
     )
 

@@ -21,7 +21,7 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import HUBER, Fit, jacobian, with_places
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import beside, orthonormal, without_outliers
-from designer.effects import length_offset, tension_bias
+from designer.effects import tension_gain, winch_scale
 from designer.effects.effect import Effect, Setting
 
 _DECAYS = (0.5, 0.8, 0.9, 0.95, 0.98, 0.995)
@@ -122,7 +122,7 @@ def _shares_left(problem: Problem, model: Fit) -> FloatArray:
     pose: as if a sensor that drifts slowly were off by another amount in each.
     """
     machine, known = problem.predict.machine, [setting.effect for setting in model.settings]
-    zeros = [e for zero in (length_offset, tension_bias) for e in zero.EFFECT.on(machine)]
+    zeros = [e for zero in (winch_scale.ZEROS, tension_gain.ZEROS) for e in zero.on(machine)]
     further = [e for e in zeros if e not in known]
     effects = [*known, *further]
     at_zero = [e.neutral[p.name] for e in further for p in e.parameters]

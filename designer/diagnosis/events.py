@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -38,6 +39,8 @@ _GROSS = 20.0
 _ACCIDENTS = 0.03
 """Share of the readings of a sensor that may be so by accident: a log seldom has more than one in a
 hundred, and one reading alone tells nothing."""
+_SPREADS = 1.5
+"""Scatter of the last third of the rows over that of the first, or the other way."""
 
 
 def with_given_up(
@@ -45,8 +48,9 @@ def with_given_up(
 ) -> Structure:
     """Return a structure with what a fit gives up that counts outliers little.
 
-    Readings tens of noises off that are nearly all of one cable; or so much that the fit, with all
-    readings counted in full, is no nearer to them than the model before it.
+    Readings tens of noises off that are nearly all of one cable; more readings that stand off than
+    come by accident, with the rows among them whose poses are wrong; or so much that the fit, with
+    all readings counted in full, is no nearer to them than the model before it.
 
     Parameters
     ----------
@@ -55,6 +59,8 @@ def with_given_up(
     rows : array (n_rows,)
         Numbers of the rows in the file.
     """
+    if any(event.place == "mistake" for event in structure.events):
+        return structure
     by_cable = residual.reshape(len(residual), 2, -1)
     n_read = np.isfinite(by_cable).any(axis=1).sum(axis=0)
     largest = np.abs(np.nan_to_num(by_cable)).max(axis=1)
@@ -71,11 +77,36 @@ def with_given_up(
             f"rows {', '.join(in_runs(rows[off]))}: its winch or its sensors"
         )
         share = float(np.nansum(by_cable[off, :, worst] ** 2) / np.nansum(residual**2))
-        events.append(Event(text, share, 0.0))
+        events.append(Event(text, share, 0.0, "cable"))
+    outliers, wrong = is_outlier(residual), wrong_poses(residual)
+    if not (events or structure.present):  # a spread as large as all of them hides none
+        outliers |= np.abs(np.nan_to_num(residual)) > _GROSS
+    n_outliers, n_readings = int(outliers.sum()), int(np.isfinite(residual).sum())
+    if n_outliers > max(2, _ACCIDENTS * n_readings):
+        by = f"{np.abs(residual[outliers]).max():.0f} times the noise"
+        cable = np.argmax(outliers.reshape(len(outliers), 2, -1).sum(axis=(0, 1))) + 1
+        where = f"cable {cable} above all"
+        if wrong.any():
+            where = f"rows with wrong poses: {', '.join(in_runs(rows[wrong]))}"
+        text = f"{n_outliers} of {n_readings} readings that stand off, by up to {by}, of {where}"
+        share = float(n_outliers / n_readings)
+        events.append(Event(text, share, 0.0, "pose" if wrong.any() else ""))
     if is_gross.any() and np.nansum(residual**2) > np.nansum(unfitted**2):
         text = "readings that stand off: counted in full, all that was fitted helps nothing"
         events.append(Event(text, 1.0, 0.0))
     return replace(structure, events=tuple(events))
+
+
+def wrong_poses(residual: FloatArray) -> BoolArray:
+    """Tell of which rows (n_rows,) the poses are wrong: all cables stand off, two at least.
+
+    By more than half of the lengths, where those were measured: all cells feel a load as well.
+    """
+    flags = np.stack([is_outlier(residual), np.isfinite(residual)]).reshape(2, len(residual), 2, -1)
+    is_off, is_read = np.asarray(flags.any(axis=2))
+    lengths_off, lengths_read = flags[:, :, 0].sum(axis=-1)
+    has_all = (is_off == is_read).all(axis=1) & (is_read.sum(axis=1) > 1)
+    return np.asarray(has_all & ((2 * lengths_off > lengths_read) | (lengths_read == 0)))
 
 
 def find_events(
@@ -112,17 +143,20 @@ def find_events(
     return tuple(sorted(events, key=lambda e: -e.fraction_of_variance))
 
 
-def find_swapped(residual: FloatArray, predicted: FloatArray) -> Event | None:
+def find_swapped(residual: FloatArray, predicted: FloatArray, rows: IntArray) -> Event | None:
     """Return readings of a kind that fit each other's prediction; None where none do.
 
     Each reading is given the prediction that suits it best, no two the same. Those that exchange
     theirs, two or more in a ring, must so leave less than a tenth of the mean square that they
-    leave as they are, each about its own mean, since a bias is no exchange.
+    leave as they are, each about its own mean, since a bias is no exchange. Two may be exchanged
+    from a row on: before it, they must leave less as they are.
 
     Parameters
     ----------
     residual, predicted : array (n_rows, 2 n_cables)
         In units of noise; NaN where not measured.
+    rows : array (n_rows,)
+        Numbers of the rows in the file.
     """
     from scipy.optimize import linear_sum_assignment
 
@@ -130,26 +164,72 @@ def find_swapped(residual: FloatArray, predicted: FloatArray) -> Event | None:
     read = residual + predicted
     texts: list[str] = []
     largest = 0.0
+    since: list[int] = []  # rows from which on lengths are exchanged: tensions likewise, probably
     for kind in np.split(np.arange(residual.shape[1]), 2):
-        read_channels = kind[~np.isnan(residual[:, kind]).all(axis=0)]
-        costs = np.array(
-            [
-                [spread(read[:, i] - predicted[:, j]) ** 2 for j in read_channels]
-                for i in read_channels
-            ]
-        )
-        if len(read_channels) < 2:
-            continue
-        fits = linear_sum_assignment(costs)[1]
-        for ring in _rings(fits):
-            as_it_is, exchanged = costs[ring, ring].sum(), costs[ring, fits[ring]].sum()
-            # On wrong plugs readings are far off; exchanged, they fit nearly as well as right ones.
-            if as_it_is > len(ring) * 3.0**2 and exchanged < 0.1 * as_it_is:
-                *leading, last = (names[read_channels[k]] for k in sorted(ring))
-                how = "with each other" if len(ring) == 2 else "in a ring"
-                texts.append(f"{', '.join(leading)} and {last} exchanged {how}")
-                largest = max(largest, 1.0 - exchanged / as_it_is)
-    return Event(", ".join(texts), largest, 0.0) if texts else None
+        channels = kind[~np.isnan(residual[:, kind]).all(axis=0)]
+        pairs = [[*pair] for pair in combinations(channels, 2)]
+        starts = {_exchanged_from(read[:, pair], predicted[:, pair]) for pair in pairs}
+        for start in [*since, *sorted(starts | {0}, reverse=True)] if pairs else ():
+            early, late = (
+                _costs(read[part][:, channels], predicted[part][:, channels])
+                for part in (slice(start), slice(start, None))
+            )
+            fits, count = linear_sum_assignment(late)[1], len(texts)
+            for ring in _rings(fits):
+                as_it_is, exchanged = late[ring, ring].sum(), late[ring, fits[ring]].sum()
+                was_right = early[ring, ring].sum() < 0.1 * early[ring, fits[ring]].sum()
+                # On wrong plugs readings are far off; exchanged, they fit nearly as right ones do.
+                is_wrong = as_it_is > len(ring) * 3.0**2 and exchanged < 0.1 * as_it_is
+                if is_wrong and (was_right or not start):
+                    *leading, last = (names[channels[k]] for k in sorted(ring))
+                    how = "with each other" if len(ring) == 2 else "in a ring"
+                    how += f" from row {rows[start]} on" if start else ""
+                    texts.append(f"{', '.join(leading)} and {last} exchanged {how}")
+                    largest = max(largest, 1.0 - exchanged / as_it_is)
+            if len(texts) > count:
+                since.append(start)
+                break
+    return Event(", ".join(texts), largest, 0.0, "mistake") if texts else None
+
+
+def _costs(read: FloatArray, predicted: FloatArray) -> FloatArray:
+    """Return the mean square that each reading leaves with each prediction (n, n)."""
+    return np.array([[spread(y - x) ** 2 for x in predicted.T] for y in read.T])
+
+
+def _exchanged_from(read: FloatArray, predicted: FloatArray) -> int:
+    """Return the row from which on two readings (n_rows, 2) fit each other's prediction best.
+
+    0 where fewer than `LEAST_ROWS` are on either side of it, or most do not fit so.
+    """
+    straight, crossed = (np.abs(read - to).sum(axis=1) for to in (predicted, predicted[:, ::-1]))
+    # Roots, so that no row decides alone.
+    better = np.nan_to_num(np.sqrt(straight) - np.sqrt(crossed))
+    start = int(np.argmax(np.cumsum(better[::-1])[::-1]))
+    is_inside = LEAST_ROWS <= start <= len(read) - LEAST_ROWS
+    return start if is_inside and np.mean(better[start:] > 0.0) > 0.8 else 0
+
+
+def find_spreading(residual: FloatArray) -> Event | None:
+    """Return scatter that grows or falls as the rows go on, as of a wind that nobody read.
+
+    By Spearman's correlation of the order of pairs of rows with how far their readings differ, in
+    which nothing slow is left.
+    """
+    from scipy.stats import spearmanr
+
+    channels = channels_of(residual)
+    third = len(channels) // 6
+    if third < LEAST_ROWS or not channels.size:
+        return None
+    even = channels[: len(channels) // 2 * 2]
+    steps = np.sqrt(np.mean((even[1::2] - even[::2]) ** 2, axis=1) / 2.0)
+    ends = [float(np.sqrt(np.mean(part**2))) for part in (steps[:third], steps[-third:])]
+    share, chance = spearmanr(np.arange(len(steps)), steps)
+    if chance > SIGNIFICANCE or max(ends) < _SPREADS * min(ends):
+        return None
+    text = "scatter that changes as the rows go on, from {:.2g} to {:.2g} times the noise"
+    return Event(text.format(*ends), float(share**2), float(chance), "scatter")
 
 
 def _rings(order: IntArray) -> Iterator[list[int]]:
@@ -218,7 +298,7 @@ def _steps(residual: FloatArray, rows: IntArray) -> Iterator[Event]:
     rng = np.random.default_rng(0)
     by_accident = [best_step(draw).share for draw in draws(channels, lasts, rng, _DRAWS)]
     (chance,) = chances_of(np.array([best.share]), by_accident)
-    yield Event(f"a step at row {rows[best.row]}", best.share, float(chance))
+    yield Event(f"a step at row {rows[best.row]}", best.share, float(chance), "time")
 
 
 def _ends(residual: FloatArray, predicted: FloatArray) -> Iterator[Event]:
@@ -261,7 +341,7 @@ def _end_of(values: FloatArray, remainder: FloatArray, text: str) -> Event | Non
     # eight cables.
     looks = 2 * len(_KNEES) * 16
     chance = looks * beta.sf(best / variance, 0.5, 0.5 * (len(values) - 2))
-    return Event(text, best / variance, float(min(1.0, chance)))
+    return Event(text, best / variance, float(min(1.0, chance)), "cable")
 
 
 def _waves(residual: FloatArray, lengths_m: FloatArray) -> Iterator[Event]:
@@ -290,7 +370,7 @@ def _waves(residual: FloatArray, lengths_m: FloatArray) -> Iterator[Event]:
             f"a wave in length {k + 1}, {best.length_m:.3g} m long and {height:.2g} "
             "times the noise high, as a drum off centre makes it"
         )
-        yield Event(text, best.share, min(1.0, float(chance)))
+        yield Event(text, best.share, min(1.0, float(chance)), "cable")
 
 
 def _of_a_sensor(gone: BoolArray, residual: FloatArray) -> Iterator[Event]:

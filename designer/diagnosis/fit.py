@@ -12,7 +12,7 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.edge import steepness
 from designer.diagnosis.look_ahead import View
 from designer.diagnosis.problem import Problem
-from designer.diagnosis.statistics import score_covariances
+from designer.diagnosis.statistics import SIGNIFICANCE, score_covariances
 from designer.diagnosis.step_time import StepTime, step_time
 from designer.effects.effect import Effect, Setting, Values
 
@@ -69,6 +69,12 @@ class Fit:
         """Tell whether an effect has values here that an engineer would believe."""
         values = next(s.values for s in self.settings if s.effect.key == effect.key)
         return all(p.is_plausible(values[p.name]) for p in effect.parameters)
+
+    def is_faint(self, effect: Effect) -> bool:
+        """Tell whether an effect may as well do nothing, by the covariance of all its values."""
+        from scipy.stats import chi2
+
+        return bool(chi2.sf(self.wald[effect.key], sum(effect.strength)) > SIGNIFICANCE)
 
 
 def huber(residual: FloatArray) -> FloatArray:

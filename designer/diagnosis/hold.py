@@ -17,17 +17,18 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.errors_of import thirds_of
-from designer.diagnosis.events import find_common, find_events, find_swapped
+from designer.diagnosis.events import find_common, find_events, find_spreading, find_swapped
 from designer.diagnosis.fit import Fit, jacobian, with_places
 from designer.diagnosis.mirrored import find_mirrored
 from designer.diagnosis.problem import Problem
-from designer.diagnosis.result import Reason, Withdrawn
+from designer.diagnosis.result import MOST_SCATTER, Reason, Withdrawn
 from designer.diagnosis.search import Searcher, Step, without
 from designer.diagnosis.statistics import (
     SIGNIFICANCE,
     beside,
     block_of,
     orthonormal,
+    rms,
     without_outliers,
 )
 from designer.diagnosis.structure import (
@@ -37,6 +38,7 @@ from designer.diagnosis.structure import (
     find_structure,
 )
 from designer.effects.effect import Effect, Readings, Setting
+from designer.effects.platform_force import EFFECT as FORCE
 from designer.progress import Pace
 
 _MOST_CARRIERS = 4
@@ -119,11 +121,13 @@ def _standard(values: FloatArray, rows: BoolArray) -> FloatArray:
 
 _SMALL = 0.5
 """Of the loss that stays unexplained: with less, an effect may be bent to fit a part of that."""
-_CLEAR = 2.0
-"""Standard deviations of a gain above zero: one in forty gets there by chance, and each effect has
-passed the search before."""
+_CLEAR = 1.0
+"""Standard deviations of a gain above zero: one in six gets there by chance, and each effect has
+passed the search before, by less than one in a thousand."""
 _LEAST = 0.01
 """Share of the held-out mean square below which a gain is of no use to anyone."""
+_HARM = -0.1
+"""Share of the mean square of lengths, or of tensions, that may come with an effect by accident."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,17 +167,20 @@ class Outcome:
 
     def fit_without(self, effect: Effect) -> Fit:
         """Fit the other effects, from the values that they have."""
-        return self.searcher.fit(without(self.found, effect.key), self.fit)
+        return self.searcher.fit(without(self.found, effect.key), self.fit, thorough=True)
 
     def holding(
         self, tests: Sequence[Callable[[Outcome], Withdrawn | None]], progress: Pace
     ) -> Outcome:
-        """Withdraw what the first test objects to, fit the rest anew, until all are content."""
+        """Withdraw what the first test objects to, fit the rest anew, until all are content.
+
+        With what a test puts in its place, if anything.
+        """
         gone = next((gone for test in tests if (gone := test(self))), None)
         if gone is None:
             return self
         progress(f"{gone.effect} withdrawn")
-        rest = tuple(without(self.found, gone.effect))
+        rest = tuple(dict.fromkeys([*without(self.found, gone.effect), *gone.instead]))
         model = self.searcher.fit(rest, self.fit, thorough=True)
         less = replace(self, fit=model, found=rest, withdrawn=(*self.withdrawn, gone))
         return less.holding(tests, progress)
@@ -188,7 +195,7 @@ class Gain:
 
     @property
     def is_clear(self) -> bool:
-        """Whether it is at least 1 %, and two standard deviations above zero."""
+        """Whether it is at least 1 %, and a standard deviation above zero."""
         return self.share >= max(_LEAST, _CLEAR * self.std)
 
 
@@ -211,7 +218,7 @@ def search_and_hold(
     steps, model, effects_found = searcher.run()
     # The best of what would still earn its place, but with values that nobody would believe; and of
     # what would, did the readings not drift.
-    last = steps[-1].trials if steps else ()
+    last = [t for t in steps[-1].trials if t.effect not in effects_found] if steps else []
     good = [t for t in last if t.earns_its_place]
     wild = [gone for t in good if (gone := implausible(t.fit, [t.effect]))][:1]
     drift = [Withdrawn(t.effect.key, reason=Reason.READINGS_DRIFT) for t in last if t.is_drift][:1]
@@ -225,6 +232,8 @@ def keep_what_helps(
     outcome: Outcome, problem: Problem, heldout: BoolArray, progress: Pace
 ) -> tuple[Outcome, dict[str, Gain]]:
     """Withdraw what has no clear gain on held-out rows, least clear first; fit the rest anew.
+
+    Nor may it make one kind of reading worse there, whatever it does for the other.
 
     Parameters
     ----------
@@ -247,17 +256,30 @@ def keep_what_helps(
     def unseen(outcome: Outcome) -> Withdrawn | None:
         gains.clear()
         residual = problem.residual(outcome.fit.settings)[heldout]
+        harm = {}
         for effect in outcome.found:
             before = problem.residual(outcome.fit_without(effect).settings)[heldout]
             gains[effect.key] = _gain(before, residual, heldout)
+            halves = zip(np.hsplit(before, 2), np.hsplit(residual, 2), strict=True)
+            harm[effect.key] = min(
+                (_gain(*h, heldout).share for h in halves if rms(h[1]) > MOST_SCATTER), default=0.0
+            )
+        worst = min(harm, key=harm.__getitem__, default="")
+        if worst and harm[worst] < _HARM:
+            detail = f"their mean square grows by {-harm[worst]:.0%}"
+            return Withdrawn(worst, reason=Reason.WORSE, detail=detail)
         if all(gain.is_clear for gain in gains.values()):
             return None
         least = min(gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std)
         gain = gains[least]
         return Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
 
+    def bent_since(outcome: Outcome) -> Withdrawn | None:
+        return _bent(outcome) if len(outcome.withdrawn) > n_withdrawn else None
+
+    n_withdrawn = len(outcome.withdrawn)
     outcome = replace(outcome, problem=problem, rows=np.ones_like(heldout))
-    tests = (_implausible, _faint, unseen, _no_step)
+    tests = (_implausible, _faint, unseen, _no_step, _unsteady, bent_since)
     return outcome.holding(tests, progress), gains
 
 
@@ -272,14 +294,17 @@ def structure_left(problem: Problem, settings: Sequence[Setting], rows: BoolArra
     common = find_common(residual, covariates, numbers)
     lengths_m = problem.surroundings(settings).length_m[rows]
     events = find_events(residual, predicted, lengths_m, structure, numbers)
-    named = (*([mistaken] if mistaken else []), *events, *([common] if common else []))
-    return replace(structure, events=named)
+    named = [mistaken] if mistaken else [*events, common]
+    if not (any(named) or structure.present):
+        named = [find_spreading(residual)]
+    return replace(structure, events=tuple(event for event in named if event))
 
 
 def _mistaken(problem: Problem, settings: Sequence[Setting], rows: BoolArray) -> Event | None:
     """Return a mirrored frame or exchanged plugs; a frame explains all readings, plugs some."""
-    residual_and_predicted = _residual_and_predicted(problem, settings, rows)
-    return find_mirrored(problem, settings, rows) or find_swapped(*residual_and_predicted)
+    readings = _residual_and_predicted(problem, settings, rows)
+    numbers = problem.measured.row_numbers[rows]
+    return find_mirrored(problem, settings, rows) or find_swapped(*readings, numbers)
 
 
 def _residual_and_predicted(
@@ -304,6 +329,17 @@ def _bent(outcome: Outcome) -> Withdrawn | None:
     if losses[least] - model.loss < _SMALL * (model.loss - model.n_data):
         return Withdrawn(least, reason=Reason.SMALL)
     return drifting(outcome)
+
+
+def _unsteady(outcome: Outcome) -> Withdrawn | None:
+    """Return a tilt, if what is left scatters more as the rows go on: a wind does, no base."""
+    withdrawn = [each.effect for each in outcome.withdrawn]
+    force = tuple(e for e in without(outcome.searcher.candidates, *withdrawn) if e.id == FORCE.id)
+    is_found = "base_tilt" in [effect.key for effect in outcome.found]
+    is_unsteady = any(event.place == "scatter" for event in outcome.structure.events)
+    if not (is_found and is_unsteady and force):
+        return None
+    return Withdrawn("base_tilt", reason=Reason.UNSTEADY, instead=force)
 
 
 def _no_step(outcome: Outcome) -> Withdrawn | None:
@@ -332,10 +368,8 @@ def _faint(outcome: Outcome) -> Withdrawn | None:
 
     All its values together: those of a moved exit point are each in doubt through the others.
     """
-    from scipy.stats import chi2
-
     for effect in outcome.found:
-        if chi2.sf(outcome.fit.wald[effect.key], sum(effect.strength)) > SIGNIFICANCE:
+        if outcome.fit.is_faint(effect):
             return Withdrawn(effect.key, reason=Reason.FAINT)
     return None
 

@@ -37,7 +37,9 @@ def find_mirrored(problem: Problem, settings: Sequence[Setting], rows: BoolArray
     best = min(left, key=left.__getitem__)
     if left[best] > _NEAR * as_it_is:
         return None
-    return Event(f"a mirrored frame of the poses: {best}", 1.0 - left[best] / as_it_is, 0.0)
+    return Event(
+        f"a mirrored frame of the poses: {best}", 1.0 - left[best] / as_it_is, 0.0, "mistake"
+    )
 
 
 def _mean_square(problem: Problem, settings: Sequence[Setting], rows: BoolArray) -> float:

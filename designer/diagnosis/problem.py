@@ -18,6 +18,7 @@ from designer.diagnosis.statistics import MAD_TO_STD
 from designer.effects.effect import Effect, Readings, Setting, as_built
 from designer.effects.registry import SHIPPED, KnownEffects
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
+from designer.model.load_case import AIR_DENSITY_KG_PER_M3
 from designer.model.machine import Machine
 from designer.model.measured_data import EVEN, Measured, Noise
 from designer.model.robot import Poses
@@ -25,9 +26,6 @@ from designer.statics.internal import InternalBalance
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.taut import solve_taut
 from designer.statics.underactuated import imbalance, solve_underactuated
-
-AIR_DENSITY_KG_PER_M3 = 1.225
-"""Dry air at 15 °C and sea level, ISO 2533 [kg/m³]."""
 
 
 def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None) -> Readings:

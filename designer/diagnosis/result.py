@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
@@ -14,6 +15,7 @@ from designer import __version__, checked
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.calibration import Calibration
 from designer.diagnosis.errors_of import Error, Foretold, Outlier, SessionError, Stage
+from designer.diagnosis.events import wrong_poses
 from designer.diagnosis.proposals import Proposal
 from designer.diagnosis.search import Step
 from designer.diagnosis.structure import Correction, Structure, Whereabouts
@@ -27,10 +29,23 @@ from designer.documents.plain import (
     record,
 )
 from designer.effects.effect import Effect, Readings, Setting
+from designer.effects.platform_force import EFFECT as FORCE
+from designer.effects.poses import DISTORTION
 from designer.model.machine import Machine
 from designer.model.measured_data import KINDS, Measured, Noise, ReadingKind
+from designer.spelling import in_runs
 from designer.study import DeclaredEffect, Study
 
+NEXT_CHECKS = {
+    "cable": "winch, pulley, plugs and load cell of the cable that is named",
+    "mistake": "plugs, numbers of cables, and the frame of the poses",
+    "pose": "poses (tracker, frame, distance), exit points, what pulls on the platform there",
+    "scatter": "wind that nobody read, sway, how well poses are measured",
+    "time": "what changed with time: load, wind, temperature, homing, foundations",
+}
+"""What to look at, by where what is left shows; see `Event.place`."""
+_COUNTED, _OF_ONE = 20.0, 0.6
+"""Times the noise that a reading counts at most; share of what is left that points to a cable."""
 MOST_SCATTER = 1.5
 """Times the declared noise beyond which sensors do not explain what is left."""
 
@@ -90,8 +105,10 @@ class Reason(Enum):
     IMPLAUSIBLE = "it needs values that are not plausible"
     FAINT = "its values may be chance where neighbouring rows are counted as alike"
     NO_STEP = "what is left still goes with time, so that it was no step"
+    UNSTEADY = "what is left scatters the more as the rows go on, as in a wind that was not read"
     READINGS_DRIFT = "a drift of the readings explains it as well"
     UNSEEN = "it does not help on rows that no fit has seen"
+    WORSE = "it makes lengths or tensions worse on rows that no fit has seen"
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +130,8 @@ class Withdrawn:
     gain, gain_std : float
         Share of the held-out mean square that goes with it, and how far that is in doubt; NaN if
         not tried.
+    instead : tuple of Effect
+        What took its place.
     """
 
     effect: str = field(metadata={"json": "id"})
@@ -124,6 +143,7 @@ class Withdrawn:
     detail: str = ""
     gain: float = field(default=float("nan"), metadata={"json": "heldout_gain"})
     gain_std: float = field(default=float("nan"), metadata={"json": "heldout_gain_std"})
+    instead: tuple[Effect, ...] = field(default=(), metadata={"json": None})
 
 
 class DiagnosisVerdict(Enum):
@@ -387,6 +407,44 @@ class Diagnosis(checked.Shown):
         return any(s.effect.on_poses is not None for s in self.final.settings)
 
     @property
+    def is_smooth(self) -> bool:
+        """Whether one cause that goes smoothly with the place may be behind several findings."""
+        rivals = (
+            set.intersection(*(set(f.rivals) for f in self.findings)) if self.findings else set()
+        )
+        return len(self.findings) > 2 and not rivals.isdisjoint((DISTORTION.id, FORCE.id))
+
+    @property
+    def wrong_poses(self) -> list[int]:
+        """Numbers of rows in which all cables stand off, so that their poses are wrong."""
+        return list(self.measured.row_numbers[wrong_poses(self.residual_after)].tolist())
+
+    @property
+    def left_out(self) -> str:
+        """How many readings stand off and are in no error, in words; empty where none does."""
+        counts = Counter(outlier.channel.split()[0] for outlier in self.outliers)
+        parts = [
+            f"{counts[kind.name]} of {np.isfinite(kind.of(self.measured)).sum()} {kind.name}s"
+            for kind in KINDS
+            if counts[kind.name]
+        ]
+        if self.wrong_poses:
+            rows = ", ".join(in_runs(self.wrong_poses))
+            parts.append(f"all cables of rows {rows}, whose poses are wrong")
+        return ", ".join(parts)
+
+    @property
+    def next_checks(self) -> list[str]:
+        """What to look at next, by cable, by pose and by time; nothing where nothing is left."""
+        structure = self.structure_after
+        places = {e.place for e in structure.events} | {c.place for c in structure.present[:1]}
+        off = np.minimum(np.nan_to_num(np.abs(self.residual_after)), _COUNTED) ** 2
+        share = off.reshape(len(off), 2, -1).sum(axis=(0, 1)) / max(float(off.sum()), 1e-300)
+        worst = f"cable {np.argmax(share) + 1}, which has {share.max():.0%} of what is left"
+        is_of_one = self.is_unexplained and len(share) > 1 and share.max() > _OF_ONE
+        return [worst] * bool(is_of_one) + [NEXT_CHECKS[place] for place in sorted(places - {""})]
+
+    @property
     def not_held(self) -> str:
         """How many rows are in no error, since a stage cannot hold them, in words."""
         return ", ".join(f"{s.n_not_held} {s.label}" for s in self.stages if s.n_not_held)
@@ -409,6 +467,7 @@ class Diagnosis(checked.Shown):
                 "before": before,
                 "after": after,
                 "noise": kind.of(self.noise),
+                "left_out": sum(o.channel.startswith(kind.name) for o in self.outliers),
             }
             for kind, before, after in self.errors
         }
@@ -417,6 +476,7 @@ class Diagnosis(checked.Shown):
             "rows": {
                 "fit": int((~self.heldout).sum()),
                 "heldout": int(self.heldout.sum()),
+                "wrong_poses": self.wrong_poses,
                 **rows_dict(self.outliers, self.measured),
             },
             "sessions": self.sessions,
@@ -430,6 +490,7 @@ class Diagnosis(checked.Shown):
             "not_plausible": self.doubts,
             "unexplained": {
                 **structure_dict(self.structure_after),
+                "check_next": self.next_checks,
                 "reading": left_in and left_in.reading,
                 "rows": left_in.rows if left_in else [],
             },

@@ -39,6 +39,8 @@ _MOST_SETS = 6
 """Sets of effects that are fitted of those that promise most."""
 _MOST_TOGETHER = 3
 """Cables whose effects are tried together: what is off with more of them has a cause in common."""
+_SAME = 0.5
+"""Difference of penalised loss that is none: laws that are one, seen from two sides."""
 _ACTS = 3.3
 """Standard deviations from doing nothing that one number in a thousand gets to by chance."""
 
@@ -120,7 +122,7 @@ class Step:
     instead: tuple[Effect, ...] = ()
 
 
-def _best(trials: Sequence[EffectTrial]) -> list[EffectTrial]:
+def _best(trials: Sequence[EffectTrial], order: Sequence[Effect]) -> list[EffectTrial]:
     """Of the best that earn their place, and those nearly as good, return those to name.
 
     First an error of setting up where there is one, then the one with fewest numbers of all.
@@ -138,6 +140,9 @@ def _best(trials: Sequence[EffectTrial]) -> list[EffectTrial]:
         if t.score(variance)
         >= best.score(variance) - RIVAL_MARGIN * min(few, t.fit.inflation[t.effect.key])
     ]
+    # Of equal ones, the one that acts first.
+    place = {effect.key: k for k, effect in enumerate(order)}
+    close.sort(key=lambda t: (-round(t.score(variance) / _SAME), place[t.effect.key]))
     by_numbers = sorted(close, key=lambda t: len(t.effect.parameters))
     set_up = [t for t in by_numbers if t.effect.cause == "setting_up"]
     return list(dict.fromkeys([*set_up[:1], *by_numbers[:1]]))
@@ -218,7 +223,7 @@ class Searcher:
             part = f"round {len(steps) + 1}"
             trials, passed_over = self.trials(effects, present, part, earned)
             is_over = self.progress.is_over
-            best = [] if is_over else _best(trials)
+            best = [] if is_over else _best(trials, self.candidates)
             # More that a machine lacks at once are not to be told apart by one log.
             extended = [self._extended(effects, t, trials) for t in best * (len(effects) < 5)]
             # Physics that makes more of the others superfluous is the simpler cause.
@@ -233,7 +238,8 @@ class Searcher:
             if trials:
                 instead = () if effects is before else tuple(effects)
                 steps.append(Step(tuple(trials), added, not is_over, passed_over, instead))
-        effects = self._predicting(self._reconsidered(effects, present, steps), present)
+        effects = self._parted(self._reconsidered(effects, present, steps), present)
+        effects = self._predicting(effects, present)
         return tuple(steps), self.fit(effects, present, thorough=True), tuple(effects)
 
     def _looked_ahead(
@@ -262,6 +268,8 @@ class Searcher:
         together = [s.effect for s in model.settings if s.effect not in self.given]
         if self._unseen_loss(together, model) >= self._unseen_loss(effects, present):
             return effects, present
+        # What was found before comes first, in the order in which it was.
+        together.sort(key=lambda e: effects.index(e) if e in effects else len(effects))
         kept = self._pruned(together)
         model = self.fit(kept, model)
         is_better = self._penalised(model) < self._penalised(present)
@@ -296,7 +304,8 @@ class Searcher:
             model = fit(self.problem, every, self.rows, (*alone.settings, *promise), anew=True)
             margin = RIVAL_MARGIN * max(model.inflation[effect.key] for effect in together)
             gain = (self._penalised(present) - self._penalised(model)) / model.variance
-            if gain > margin and all(map(model.is_plausible, together)):
+            is_sure = all(model.is_plausible(e) and not model.is_faint(e) for e in together)
+            if gain > margin and is_sure:
                 better.append(model)
         return better
 
@@ -460,23 +469,24 @@ class Searcher:
         for rival in self.progress.each(f"rivals of {effect.key}", self._others(effects)):
             if effect.is_part_of(rival):  # which can do all that it does
                 continue
-            if rival.key not in good and self._in_reach(rest, rival, lost).gain < least:
+            beside = without(rest, *rival.parts)  # it stands for all of them
+            is_hopeful = rival.key in good or len(beside) < len(rest)
+            if not is_hopeful and self._in_reach(rest, rival, lost).gain < least:
                 continue
             trials = [t.fit for step in steps for t in step.trials if t.effect.key == rival.key]
-            with_rest = {e.key for e in (*self.given, *rest, rival)}
+            with_rest = {e.key for e in (*self.given, *beside, rival)}
             fits = [m for m in trials if {s.effect.key for s in m.settings} == with_rest]
             if not fits:
                 last = dict.fromkeys([*trials[:1], *trials[-1:]])
-                fits = [self.fit([*rest, rival], present, anew=True)]
-                fits += [self.fit([*rest, rival], start) for start in last]
+                fits = [self.fit([*beside, rival], present, anew=True)]
+                fits += [self.fit([*beside, rival], start) for start in last]
             swapped = min(fits, key=lambda model: model.loss)
             if not swapped.is_plausible(rival):
                 continue
             suits = self._gap(swapped, present) / scale < RIVAL_MARGIN
             if not suits and rival.key in good:
-                gap = self._unseen_loss([*rest, rival], swapped) - self._unseen_loss(
-                    effects, present
-                )
+                gap = self._unseen_loss([*beside, rival], swapped)
+                gap -= self._unseen_loss(effects, present)
                 suits = gap / scale < RIVAL_MARGIN
             if suits:
                 answer.append((rival,))
@@ -547,7 +557,7 @@ class Searcher:
         present: Fit,
         k: int,
         outsider: Effect,
-        margin: float = 0.0,
+        margin: float,
         *,
         anew: bool = False,
     ) -> tuple[list[Effect], Fit]:
@@ -565,9 +575,13 @@ class Searcher:
     def _reconsidered(
         self, effects: list[Effect], present: Fit, steps: Sequence[Step]
     ) -> list[Effect]:
-        """Replace a member by what was as good when it was added, and is better beside them all."""
+        """Replace a member by what was as good when it was added, and is better beside them all.
+
+        Or about as good, with fewer numbers; or one that acts before it, of laws that are one.
+        """
         if len(effects) == 1:
             return effects
+        place = self.candidates.index
         members = [
             (step, member)
             for step in steps
@@ -583,7 +597,29 @@ class Searcher:
                 is_as_good = trial.may_be_added and trial.score(variance) >= least
                 if member.effect in effects and is_as_good and not is_later:
                     k = effects.index(member.effect)
-                    effects, present = self._swapped(effects, present, k, trial.effect, anew=True)
+                    less = len(member.effect.parameters) - len(trial.effect.parameters)
+                    is_first = place(trial.effect) < place(member.effect)
+                    margin = (
+                        -RIVAL_MARGIN if less > 0 else -_SAME if is_first and not less else _SAME
+                    )
+                    effects, present = self._swapped(
+                        effects, present, k, trial.effect, margin, anew=True
+                    )
+        return effects
+
+    def _parted(self, effects: list[Effect], present: Fit) -> list[Effect]:
+        """Name the parts of a member in its place, if they do about as well together.
+
+        Where they do better, also with values that are not plausible: then it is none of them.
+        """
+        for member in list(effects):
+            parts = [e for e in self._others(effects) if e.id in member.parts]
+            several = [*without(effects, member.key), *parts]
+            model = self.fit(several, present, anew=True) if parts else present
+            loss = (self._penalised(model) - self._penalised(present)) / present.variance
+            margin = RIVAL_MARGIN if all(map(model.is_plausible, parts)) else -RIVAL_MARGIN
+            if parts and loss < margin:
+                effects, present = self._pruned(several), model
         return effects
 
     def _pruned(self, effects: list[Effect]) -> list[Effect]:

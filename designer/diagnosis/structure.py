@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import astuple, dataclass, field
+from typing import Literal
 
 import numpy as np
 
@@ -28,6 +29,7 @@ from designer.model.measured_data import Measured
 
 ORDER = ("time_s", "row")
 """Covariates that tell the order of the rows."""
+Place = Literal["mistake", "cable", "pose", "time", "scatter", ""]
 _DRAWS = 999
 """As many as `SIGNIFICANCE` asks for to be counted."""
 
@@ -61,6 +63,12 @@ class Carrier:
         """Whether it is a speed, which averages to nothing and so bends no constant to fit it."""
         return self.name.startswith("speed_")
 
+    @property
+    def place(self) -> Place:
+        """Where it points to."""
+        of_pose = ("x_m", "y_m", "z_m", "length_", "tension_", "direction_", "speed_")
+        return "pose" if self.name.startswith(of_pose) else "time"
+
 
 @dataclass(frozen=True, slots=True)
 class Event:
@@ -74,11 +82,14 @@ class Event:
         Share of the variance of the reading in which it shows most.
     chance : float
         Probability of as much by accident.
+    place : str
+        Where it points to: plugs and frames, a cable, the poses, the time, unsteady rows; or empty.
     """
 
     text: str
     fraction_of_variance: float
     chance: float = field(metadata={"json": None})
+    place: Place = field(default="", metadata={"json": None})
 
 
 def _strongest(carriers: Sequence[Carrier]) -> dict[str, object]:
@@ -276,6 +287,8 @@ def _largest_share(bases: FloatArray, channels: FloatArray) -> FloatArray:
     return np.asarray((explained / np.sum(channels**2, axis=0)).max(axis=1))
 
 
+_AS_GOOD = 1.25
+"""Error over another that is as good: ten numbers for each reading are fitted to few rows."""
 _MOST_ROWS = 6
 """As many as one looks up in a log."""
 
@@ -341,6 +354,23 @@ def smooth_correction(
         if np.isfinite(seen).sum() > 3:
             corrected[:, channel] = column - _parabola(seen, filled)
     return Correction(name, rms(clean[heldout]), rms(corrected[heldout]))
+
+
+def is_one_smooth_error(
+    before: FloatArray, after: FloatArray, position_m: FloatArray, heldout: BoolArray
+) -> bool:
+    """Tell whether quadratics in the position do on unseen rows what effects do to a residual."""
+    z = (position_m - position_m.mean(axis=0)) / np.maximum(position_m.std(axis=0), 1e-9)
+    i, j = np.triu_indices(3)
+    terms = np.column_stack([np.ones(len(z)), z, z[:, i] * z[:, j]])
+    is_sound = np.isfinite(without_outliers(after))
+    remainder = np.where(is_sound, before, np.nan)
+    for k in range(remainder.shape[1]):
+        seen = is_sound[:, k] & ~heldout
+        if seen.sum() > 2 * terms.shape[1]:
+            remainder[:, k] -= terms @ np.linalg.lstsq(terms[seen], remainder[seen, k])[0]
+    unseen = is_sound & heldout[:, None]
+    return rms(remainder[unseen]) < _AS_GOOD * rms(after[unseen])
 
 
 def strongest_channel(residual: FloatArray, covariate: FloatArray) -> int:

@@ -10,7 +10,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.effects.effect import Effect, Parameter, Readings, Size, Values
 from designer.effects.load_step import LEAST_ROWS
-from designer.effects.winch_zero import ZERO
+from designer.effects.winch_scale import ZERO
 from designer.model.measured_data import Measured
 from designer.units import ANGLE, LENGTH
 

@@ -57,7 +57,7 @@ EFFECT = Effect(
     source="definition",
     parameters=(
         Parameter("radius_gain_per_m", PER_LENGTH, _gain),
-        Parameter("reference_{cable}_m", LENGTH, _reference, is_optional=True),
+        Parameter("reference_{cable}_m", LENGTH, _reference, is_optional=True, is_shape=True),
     ),
     on_readings=_change,
     needs=frozenset({"length"}),

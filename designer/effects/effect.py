@@ -244,6 +244,8 @@ class Effect:
         Whether it depends on the way that the cables went from row to row.
     shifts_lengths : bool
         Whether it leaves only changes of the lengths to go by, not the lengths themselves.
+    parts : tuple of str
+        Ids of effects that are named in its place where they do about as well together.
     also_called : str
         What ``measurements.unknown`` calls it for all cables together.
     cable : int or None
@@ -272,6 +274,7 @@ class Effect:
     of_rope: bool = False
     follows_rows: bool = False
     shifts_lengths: bool = False
+    parts: tuple[str, ...] = ()
     also_called: str = ""
     cable: int | None = None
     session: int | None = None

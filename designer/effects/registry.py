@@ -57,36 +57,41 @@ class KnownEffects:
 
 
 _IN_ORDER = (
-    "pose_shift",
-    "pose_scale",
-    "pose_frame",
-    "anchor_offset",
-    "attachment_offset",
+    "poses.SHIFT",
+    "poses.SCALE",
+    "poses.FRAME",
+    "poses.DISTORTION",
+    "poses.TOOL_POINT",
+    "points.EXIT",
+    "points.ATTACHMENT",
     "base_tilt",
     "pulley_radius",
-    "elastic_modulus",
-    "cable_modulus",
-    "linear_mass",
-    "cable_mass",
+    "rope.MODULUS",
+    "rope.CABLE_MODULUS",
+    "rope.MASS",
+    "rope.CABLE_MASS",
     "platform_mass",
+    "platform_force",
     "load_step",
-    "centre_of_mass_offset",
+    "points.CENTRE",
+    "platform_force.TURNING",
     "wind_drag",
     "bending_stiffness",
     "mast_compliance",
     "stiffening",
     "thermal_expansion",
     "creep",
-    "cable_creep",
+    "creep.ONE",
     "cable_pulley_radius",
     "pulley_inclination",
     "encoder_on_rope",
     "drum_layering",
-    "drum_scale",
+    "winch_scale.ALL",
+    "thermal_expansion.WINCH",
     "tension_length",
     "winch_scale",
-    "length_offset",
-    "winch_zero",
+    "winch_scale.ZEROS",
+    "winch_scale.HOMED",
     "drum_eccentricity",
     "backlash",
     "clock_offset",
@@ -94,13 +99,14 @@ _IN_ORDER = (
     "pulley_friction",
     "tension_hysteresis",
     "tension_gain",
-    "tension_scale",
-    "tension_bias",
+    "tension_gain.ALL",
+    "tension_gain.ZEROS",
 )
-"""Files of this folder, each with its ``EFFECT``."""
+"""Files of this folder, each with its ``EFFECT``, or with several, named after a dot."""
 
 EFFECTS: tuple[Effect, ...] = tuple(
-    import_module(f"designer.effects.{name}").EFFECT for name in _IN_ORDER
+    getattr(import_module(f"designer.effects.{file}"), name or "EFFECT")
+    for file, _, name in (place.partition(".") for place in _IN_ORDER)
 )
 SHIPPED = KnownEffects(EFFECTS)
 """Our own effects, without those of plugins."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from designer.effects.effect import Effect, Parameter, Size, Values
+from designer.model.load_case import AIR_DENSITY_KG_PER_M3
 from designer.model.machine import Machine
 from designer.units import AREA
 
@@ -22,8 +23,8 @@ def _size(machine: Machine) -> Size:
 EFFECT = Effect(
     id="wind_drag",
     summary="the wind pushes the platform",
-    law="force ½ ρ |v| v C_d A with ρ = 1.225 kg/m³",
-    source="ISO 2533 (air density); definition of the drag area",
+    law=f"force ½ ρ |v| v C_d A with ρ = {AIR_DENSITY_KG_PER_M3:g} kg/m³",
+    source="EN 1991-1-4, 4.5 (air density); definition of the drag area",
     parameters=(Parameter("drag_area_m2", AREA, _size),),
     on_machine=_change,
     needs=frozenset({"wind"}),

@@ -24,7 +24,7 @@ from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.plugins.find import Plugins
 from designer.progress import Advance
-from designer.selection.candidate import Candidate, candidates_of, is_allowed
+from designer.selection.candidate import Candidate, candidates_of
 from designer.selection.cases import FEW_AT_FIRST
 from designer.selection.efficiency import Allowance
 from designer.selection.select import at_samples
@@ -198,13 +198,15 @@ class Question:
                     solve_sagging(self.robot, self.pose, stiffened).largest_tension_N
                 ),
             )
-        (candidate,) = self._at_samples(self.workspace, [self._grade_of(rope)])
+        naming = replace(self.selection, grades=(rope.grade_id,), materials=())
+        (candidate,) = self._at_samples(self.workspace, naming, [self._grade_of(rope)])
         return candidate.cable
 
-    def _at_samples(self, workspace: Workspace, grades: Sequence[Grade]) -> list[Candidate]:
-        """Return all sizes of these grades with what they meet at few samples."""
+    def _at_samples(
+        self, workspace: Workspace, selection: Selection, grades: Sequence[Grade]
+    ) -> list[Candidate]:
+        """Return the sizes of these grades with what they meet at few samples."""
         sampled = workspace.with_fewer_samples(FEW_AT_FIRST)
-        selection = replace(self.selection, grades=tuple(grade.id for grade in grades))
         return at_samples(sampled, selection, grades, self.built, self.study.load_cases)
 
     @cached_property
@@ -213,12 +215,11 @@ class Question:
 
         At few samples, as in `cable`.
         """
-        grades = [g for g in self.catalogue.grades if is_allowed(g, self.selection.grades)]
-        candidates = candidates_of(self.selection, grades, self.built)
+        candidates = candidates_of(self.selection, self.catalogue.grades, self.built)
         varying = {c.grade.id: c.grade for c in candidates if c.cable.stiffening is not None}
         if self.workspace is None or not varying:
             return candidates
-        sampled = self._at_samples(self.workspace, list(varying.values()))
+        sampled = self._at_samples(self.workspace, self.selection, list(varying.values()))
         return [c for c in candidates if c.grade.id not in varying] + sampled
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer.analysis.analyse import Analysis
+from designer.analysis.requirements import Terms
 from designer.arrays import FloatArray
 from designer.explore.question import Question, Rope, RopePerCable
 from designer.grades.grade import Grade, Size
@@ -93,6 +94,8 @@ class Ropes:
         All that the study asks for, as in the report; none until the full selection.
     answer : Answer or None
         What follows from them; None until the full selection.
+    terms : Terms or None
+        What the answer covers and is subject to; None until the full selection.
     """
 
     rows: tuple[RopeRow, ...]
@@ -104,6 +107,7 @@ class Ropes:
     proof: Proof | None = None
     requirements: tuple[Requirement, ...] = ()
     answer: Answer | None = None
+    terms: Terms | None = None
 
     def row(self, rope: Rope | RopePerCable | None) -> RopeRow | None:
         """Return the row of a rope; None where there is none."""
@@ -197,6 +201,7 @@ def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes:
         problems=catalogue.problems,
         requirements=analysis.requirements,
         answer=analysis.answer,
+        terms=analysis.terms,
     )
 
 

@@ -15,9 +15,10 @@ from typing import get_args
 
 from designer.documents.bounds import BOUNDS
 from designer.documents.document import Flaw, Keys
-from designer.grades.grade import Grade, RopeMaterial, Trust
+from designer.grades.grade import Grade, RopeMaterial
 from designer.grades.parts import Basis, ComputedColumn, ReferenceArea
 from designer.grades.proportions import proportion_flaws, within
+from designer.model.cable import Trust
 
 _ID = re.compile(r"[a-z0-9][a-z0-9._-]{0,79}")
 _LONGEST_TEXT = 1000

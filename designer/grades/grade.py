@@ -16,7 +16,7 @@ import math
 import re
 from dataclasses import dataclass
 from statistics import median
-from typing import Annotated, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import Field
 
@@ -40,9 +40,11 @@ from designer.grades.parts import (
     figure,
 )
 from designer.grades.parts import Reference as Reference  # noqa: PLC0414  # plugins take it from here
-from designer.model.cable import STEEL_EXPANSION_PER_K, Cable, Material
+from designer.model.cable import STEEL_EXPANSION_PER_K, Cable, Material, Trust
 
-Trust = Literal["A", "B", "C"]
+if TYPE_CHECKING:
+    from designer.study import Selection  # geometry, which a list of grades does not need
+
 RopeMaterial = Literal[
     "steel",
     "stainless steel",
@@ -59,6 +61,9 @@ RopeMaterial = Literal[
 
 MOST_SIZES = 500
 _STRAND = re.compile(r"\b1\s*[x×]\s*\d|spiral|locked|\brod\b|\bsolid\b", re.IGNORECASE)
+_NO_MAKER = re.compile(r"(not|none|unknown|generic|various|standard \()\b", re.IGNORECASE)
+NOT_NAMED = "not in selection.grades"
+"""Why a study that names grades does not try another one."""
 TYPICAL_LOAD_FRACTION = 0.2
 """Load over breaking load at a safety factor of 5; what stiffness is shown at without a study, and
 what a search for the tension that a rope meets starts from."""
@@ -250,15 +255,48 @@ class Grade(GradeSheet):
         return _STRAND.search(self.construction) is not None
 
     @property
-    def why_only_by_name(self) -> str | None:
-        """Why a selection takes this grade only where the study names it; None for others."""
+    def maker(self) -> str | None:
+        """Who makes it; None where its source names nobody."""
+        return None if _NO_MAKER.match(self.manufacturer) else self.manufacturer.split(" (")[0]
+
+    @property
+    def material_name(self) -> str:
+        """Its material as a study names it: `designer.model.cable.MaterialName`."""
+        return (self.material or "other").casefold().removesuffix(" steel")
+
+    def why_only_by_name(self, trust: Trust = "B", size: Size | None = None) -> str | None:
+        """Why a selection takes this grade, or a size of it, only where the study names it.
+
+        None for others: those whose figures have this trust at least.
+        """
         if self.is_nominal:
             return (
                 "computed from the factors of a standard, no product; taken where a study names it"
             )
         if self.is_strand:
             return "a single strand, made for stays and not for drums; taken where a study names it"
+        if self.trust > trust:
+            why = f"its figures are of trust {self.trust}, {TRUST_MEANING[self.trust]}"
+            return f"{why}; taken where a study names it or says trust: {self.trust}"
+        if size is not None and size.doubt and trust != "C":
+            why = "the catalogue doubts the figures of this size, which counts as trust C"
+            return f"{why}; taken where a study names the grade or says trust: C"
         return None
+
+    def why_excluded(self, selection: Selection, size: Size | None = None) -> str | None:
+        """Why a selection does not try this grade, or this size of it; None where it does.
+
+        A price list names what it offers, but sells no strand for a rope that runs over drums.
+        """
+        if selection.materials and self.material_name not in selection.materials:
+            return "of another material than selection.materials"
+        if selection.grades is not None:
+            return None if self.id in selection.grades else NOT_NAMED
+        if selection.price_list is not None and not self.is_strand:
+            for offer in selection.price_list.offers_of(self.id):
+                if size is None or offer.is_for(size.id, size.diameter_m):
+                    return None
+        return self.why_only_by_name(selection.trust, size)
 
     @property
     def thickest(self) -> Size:

@@ -140,8 +140,8 @@ def _strength_Pa(grade: Grade) -> float:
 
 
 def _identity(grade: Grade) -> Iterator[tuple[str, str]]:
-    if grade.why_only_by_name:
-        yield "by name only", grade.why_only_by_name
+    if why := grade.why_only_by_name():
+        yield "by name only", why
     yield "manufacturer", grade.manufacturer
     yield "product", grade.product
     part = "core" if grade.material in (None, "steel", "stainless steel") else "fibre"

@@ -73,14 +73,19 @@ class Catalogue(checked.Shown):
         InputError
             With a fault for each; names the nearest ids.
         """
-        ids = {grade.id for grade in self.grades}
-        grades = study.selection.grades if study.selection else None
-        faults = [
-            study.source.fault(f"selection.grades[{k}]", *self.explain_unknown(grade))
-            for k, grade in enumerate(grades or ())
-            if grade not in ids
-        ]
-        price_list = study.selection.price_list if study.selection else None
+        if (selection := study.selection) is None:
+            return
+        by_id = {grade.id: grade for grade in self.grades}
+        faults = []
+        for k, name in enumerate(selection.grades or ()):
+            refuse = partial(study.source.fault, f"selection.grades[{k}]")
+            grade = by_id.get(name)
+            if grade is None:
+                faults.append(refuse(*self.explain_unknown(name)))
+            elif grade.why_excluded(selection) is not None:
+                problem = f"{name} is of {grade.material_name}, and selection.materials is not"
+                faults.append(refuse(problem, "a grade of these materials"))
+        price_list = selection.price_list
         if price_list is not None and not faults:
             faults = [*self._faults_of_prices(study, price_list)]
         if faults:
@@ -100,9 +105,9 @@ class Catalogue(checked.Shown):
                 problem = f"the grade '{grade.id}' has no size {offer.size}"
                 expected = f"such as {alike}; `designer catalog show {grade.id}` has all"
                 yield refuse("size", problem, expected)
-        named = study.selection.grades if study.selection else None
         offered = [by_id[offer.grade] for offer in price_list.offers if offer.grade in by_id]
-        if not any(g.id in named if named else not g.why_only_by_name for g in offered):
+        selection = study.selection
+        if selection and not any(grade.why_excluded(selection) is None for grade in offered):
             problem = f"{price_list.name} has no price of a grade that the study allows"
             yield study.source.fault("selection.prices", problem, "rows of these grades")
 

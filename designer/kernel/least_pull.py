@@ -61,6 +61,13 @@ def _table(sag_max: float) -> FloatArray:
     return plain((1.0 + _MARGIN) * 0.5 * np.column_stack([chord / theta[0], 1.0 / theta[1]]))
 
 
+def largest_theta(sag_max: float, slope: FloatArray) -> FloatArray:
+    """Return the largest θ (n,) of inextensible cables with chords of slopes (n,), none below 0."""
+    chord = np.hypot(1.0, slope)
+    of_each = [_largest_theta(of, slope, chord, sag_max) for of in (_across, _below)]
+    return np.minimum(*of_each)
+
+
 def _largest_theta(
     of: Callable[..., FloatArray], slope: FloatArray, chord: FloatArray, sag_max: float
 ) -> FloatArray:

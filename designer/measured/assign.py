@@ -298,7 +298,7 @@ def _missing(assigned: Assigned, study: Study, *, has_poses: bool) -> Iterator[F
         )
     for names in (lengths, tensions):
         if not present.isdisjoint(names):
-            yield from _missing_of(assigned, names)
+            yield from _missing_of(assigned, names, ", with empty cells where nothing is read")
 
 
 def _missing_of(assigned: Assigned, names: tuple[str, ...], instead: str = "") -> Iterator[Fault]:

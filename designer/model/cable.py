@@ -6,7 +6,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -17,6 +17,13 @@ STANDARD_GRAVITY_M_PER_S2 = 9.81
 """Gravitational acceleration used throughout, as in Riehl et al., ICRA 2010 [m/s²]."""
 STEEL_EXPANSION_PER_K = 12e-6
 """Thermal expansion of steel, EN 1993-1-1:2005, 3.2.6 [1/K]."""
+Trust = Literal["A", "B", "C"]
+"""How far the figures of a rope are to be trusted: a maker's own, a seller's, third hand."""
+MaterialName = Literal[
+    "steel", "stainless", "hmpe", "vectran", "pbo", "aramid", "polyester", "nylon",
+    "polyester and nylon", "polypropylene", "other",
+]  # fmt: skip
+"""What a rope bears its load with, as a study names it."""
 Unlimited = Annotated[float, checked.Number(above=0.0, finite=False)]
 """A figure that may be ``inf``."""
 

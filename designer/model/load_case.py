@@ -33,6 +33,7 @@ from designer.model.space import Orientations
 from designer.model.wrench_set import WrenchSet
 
 AIR_DENSITY_KG_PER_M3 = 1.25
+"""EN 1991-1-4, 4.5; of every wind in this program, measured or assumed [kg/m³]."""
 _SAME_DIRECTION = 1e-12
 """Between the loads of two cables: rounding."""
 FIRST_WINDS = 8
@@ -306,6 +307,11 @@ class LoadCase:
         """Return the mass of a platform in this case, with what it weighs beyond its drawing."""
         return body.mass_kg if self.mass_kg is None else self.mass_kg + body.mass_offset_kg
 
+    def wrench_on(self, body: Platform, wrench_N: FloatArray | None = None) -> FloatArray:
+        """Return force and moment (6,) on it, likewise, or under one of the set [N, N·m]."""
+        wrench = self.wrench_N if wrench_N is None else wrench_N
+        return body.wrench_N if wrench is None else wrench + body.wrench_offset_N
+
     def under(
         self,
         robot: Robot,
@@ -321,8 +327,7 @@ class LoadCase:
         """
         bare, body, factor = (robot, cable), robot.platform, self.dynamic_factor
         mass = self.mass_on(body)
-        given = self.wrench_N if wrench_N is None else wrench_N
-        wrench = factor * (body.wrench_N if given is None else given)
+        wrench = factor * self.wrench_on(body, wrench_N)
         centre, drag = body.centre_force_N, body.drag_force_N
         if inertia is not None:
             centre = centre + mass * self.acceleration_m_per_s2 * inertia

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -52,6 +53,9 @@ class Machine:
     relative_mass, relative_stiffness : array (n_cables,) or None
         Mass per length and EA of each cable over those of ``cable``; None where all are alike. No
         design has them.
+    rope_density_kg_per_m3 : float
+        Mass of the rope on the machine over the circle of its diameter, which tells its material;
+        NaN where nothing tells it [kg/m³].
     """
 
     robot: Robot
@@ -63,6 +67,7 @@ class Machine:
     late_load_from_s: float = 0.0
     relative_mass: FloatArray | None = None
     relative_stiffness: FloatArray | None = None
+    rope_density_kg_per_m3: float = math.nan
 
     @property
     def cables(self) -> Cable | Cables:

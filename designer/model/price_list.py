@@ -55,3 +55,7 @@ class PriceList:
         """The earliest and the latest date."""
         dates = [offer.date for offer in self.offers]
         return min(dates), max(dates)
+
+    def offers_of(self, grade: str) -> tuple[Offer, ...]:
+        """Return the offers of one grade."""
+        return tuple(offer for offer in self.offers if offer.grade == grade)

@@ -50,6 +50,8 @@ class Platform(checked.Value):
     mass_offset_kg : float
         Share of the mass that a load case does not replace: what the platform weighs beyond its
         drawing [kg].
+    wrench_offset_N : array (6,)
+        Share of the wrench that a load case does not replace, likewise [N, N·m].
     inertia_kg_m2 : array (3, 3) or None
         Moments of inertia about the centre of mass, along the axes of the body frame; None where
         they are not known. Products are minus the integrals of x y and so on [kg·m²].
@@ -69,6 +71,7 @@ class Platform(checked.Value):
     drag_centre_m: checked.Vector | None = None
     drag_force_N: checked.Vector = field(default_factory=lambda: frozen_array(np.zeros(3)))
     mass_offset_kg: float = 0.0
+    wrench_offset_N: checked.Wrench = field(default_factory=lambda: frozen_array(np.zeros(6)))
     inertia_kg_m2: Annotated[FloatArray, checked.Shape((3, 3))] | None = None
     motion: Motion | None = None
     moving_mass_kg: checked.NotNegative | None = None

@@ -44,7 +44,8 @@ class Workspace(checked.Value):
     sag_max : float
         Largest sag over chord of the cables, see `Robot.sag_max`.
     proof_s : float
-        Time for a proof that the chosen rope holds in all poses [s]; zero for none.
+        Longest time for a proof that the chosen rope holds in all poses [s]; zero for none,
+        infinite for as many boxes as it may take.
     """
 
     region: Region
@@ -56,7 +57,7 @@ class Workspace(checked.Value):
     orientations: Orientations = field(default_factory=Orientations)
     floor_m: checked.Finite | None = None
     sag_max: Annotated[float, checked.Number(above=0.0, most=SAG_AT_MOST)] = SAG_MAX
-    proof_s: checked.NotNegative = 0.0
+    proof_s: Annotated[float, checked.Number(least=0.0, finite=False)] = 0.0
 
     @property
     def space(self) -> Space:

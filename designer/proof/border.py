@@ -38,27 +38,27 @@ def border_m(cover: Cover, ones: Boxes, others: Boxes) -> FloatArray:
             faces = np.stack([low, high, high, low], axis=1)
             faces[:, 1, 2], faces[:, 3, 2] = low[:, 2], high[:, 2]
         triangles += [faces[:, [0, k, k + 1]] for k in range(1, faces.shape[1] - 1)]
-    found = np.concatenate(triangles)
-    edges = found[:, 1:] - found[:, :1]
-    found = found[np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1) > 0.0]
-    return cover.places(found.reshape(-1, 3))[:, :3].reshape(-1, 3, 3)
+    corners = np.concatenate(triangles)
+    edges = corners[:, 1:] - corners[:, :1]
+    corners = corners[np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1) > 0.0]
+    return cover.places(corners.reshape(-1, 3))[:, :3].reshape(-1, 3, 3)
 
 
 def _touching(ones: Boxes, boxes: Boxes, axis: int) -> Boxes:
     """Return the common faces across an axis, as boxes that are flat along it."""
     across = [k for k in range(3) if k != axis]
-    found = []
+    faces = []
     for side, facing in ((1, 0), (0, 1)):
         at, planes = ones[side][:, axis], boxes[facing][:, axis]
         order = np.argsort(planes)
         first, last = (np.searchsorted(planes[order], at, end) for end in ("left", "right"))
         count = last - first
-        one = np.repeat(np.arange(len(at)), count)
-        nth = np.arange(len(one)) - np.repeat(np.cumsum(count) - count, count)
-        other = order[first[one] + nth]
-        low = np.maximum(ones[0][one], boxes[0][other])
-        high = np.minimum(ones[1][one], boxes[1][other])
-        low[:, axis] = high[:, axis] = at[one]
+        at_one = np.repeat(np.arange(len(at)), count)
+        nth = np.arange(len(at_one)) - np.repeat(np.cumsum(count) - count, count)
+        at_other = order[first[at_one] + nth]
+        low = np.maximum(ones[0][at_one], boxes[0][at_other])
+        high = np.minimum(ones[1][at_one], boxes[1][at_other])
+        low[:, axis] = high[:, axis] = at[at_one]
         overlaps = (low < high)[:, across].all(axis=1)
-        found.append((low[overlaps], high[overlaps]))
-    return np.concatenate([low for low, _ in found]), np.concatenate([high for _, high in found])
+        faces.append((low[overlaps], high[overlaps]))
+    return np.concatenate([low for low, _ in faces]), np.concatenate([high for _, high in faces])

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -26,8 +26,8 @@ Status = Literal["proved", "partial", "refuted", "off"]
 WITHIN = 1e-3
 """Relative distance of the bound from what was found, at which the search rests."""
 _BATCH, _SLOW_BATCH = 4096, 512
-_LONG, _FEWEST = 0.05, 64
-"""Share of the time from which on a batch is too long, and its least size."""
+MOST_BOXES = 150_000
+"""Three times what the largest of the shipped studies takes."""
 _TRIES = 32
 """Corners of a batch that are solved, the worst first."""
 _BETTER = 1.0 + 1e-9
@@ -39,10 +39,26 @@ _SMALLEST = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """What a proof may take."""
+    """What a proof may take: so many boxes, and where the user says so no longer than a time."""
 
     seconds: float = np.inf
-    boxes: float = np.inf
+    boxes: int = MOST_BOXES
+
+    def start(self) -> Clock:
+        """Return a clock that starts now."""
+        return Clock(time.monotonic() + self.seconds)
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """When a time that the user gave is over."""
+
+    end_s: float
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it is."""
+        return time.monotonic() >= self.end_s
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,10 +79,8 @@ class Proof:
         Share of the poses, by volume, for which it is proved that the cable holds.
     boxes : int
         How many were tried.
-    seconds : float
-        How long it took [s].
     reason : str
-        Why nothing was tried.
+        Why nothing was tried, or what ended it before all was decided.
     load_case : str
         In which load case, with its direction; empty where the study has none.
     """
@@ -77,7 +91,6 @@ class Proof:
     worst: FloatArray | None = field(default=None, metadata={"json": None})
     fraction: float = field(default=0.0, metadata={"json": "fraction_proved"})
     boxes: int = 0
-    seconds: float = field(default=0.0, metadata={"json": None})
     reason: str = field(default="", metadata={"json": lambda reason: {"reason": reason or None}})
     load_case: str = field(
         default="", metadata={"json": lambda load_case: {"load_case": load_case or None}}
@@ -110,25 +123,25 @@ def prove(
     enough : float
         Utilisation up to which the cable holds; just above one where it is sized for that.
     progress : callable
-        Called with how much of the budget is spent; the rest is the most that is still to come. The
+        Called with the share of the boxes that are tried; the rest is the most that is to come. The
         share of the volume says nothing of that, since the last of it may take the most.
     """
     reason = why_not(robot, space)
     if reason:
         return Proof("off", found=value, reason=reason)
     search = _BranchAndBound(robot, cable, covers_of(space), value, within, enough)
-    search.step(1)  # compiles, which is not counted
-    began = now = time.monotonic()
+    search.step(1)  # compiles, which takes none of a time that is given
+    clock = budget.start()
     while search.is_open and search.boxes < budget.boxes:
-        if now - began >= budget.seconds or search.is_refuted:
+        if clock.is_over or search.is_refuted:
             break
-        search.step(int(min(budget.boxes - search.boxes, search.batch)))
-        before, now = now, time.monotonic()
-        spent = max((now - began) / budget.seconds, search.boxes / budget.boxes)
-        progress(min(spent, 1.0))
-        if now - before > _LONG * budget.seconds:
-            search.batch = max(search.batch // 2, _FEWEST)
-    return search.result(now - began)
+        search.step(min(budget.boxes - search.boxes, search.batch))
+        progress(search.boxes / budget.boxes)
+    proof = search.result()
+    if proof.status != "partial":
+        return proof
+    cut = f"the time given, {budget.seconds:g} s," if clock.is_over else f"{proof.boxes} boxes"
+    return replace(proof, reason=f"{cut} ended it before all was decided")
 
 
 class _BranchAndBound:
@@ -260,7 +273,7 @@ class _BranchAndBound:
         for name, values in more:
             setattr(self, name, np.concatenate([getattr(self, name), values]))
 
-    def result(self, seconds: float) -> Proof:
+    def result(self) -> Proof:
         open_bound = max(self._stuck, self._bound.max(initial=0.0))
         bound = max(self._proved_bound, open_bound, self._found)
         is_bound = np.isfinite(bound) and bound <= self._enough
@@ -272,5 +285,4 @@ class _BranchAndBound:
             worst=self._worst,
             fraction=1.0 if status == "proved" else self.fraction,
             boxes=self.boxes,
-            seconds=seconds,
         )

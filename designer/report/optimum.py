@@ -102,12 +102,12 @@ def _sentence(optimum: Optimum, macro: str) -> Markup:
 def _robots(optimum: Optimum) -> Drawing | None:
     study = optimum.optimised.study
     region = None if study.workspace is None else study.workspace.region
-    where = study.robot.exit_points_m.mean(axis=0)
+    aim_m = study.robot.exit_points_m.mean(axis=0)
     if region is not None:
-        where = region.bounds_m.mean(axis=0)
+        aim_m = region.bounds_m.mean(axis=0)
     elif study.pose is not None:
-        where = study.pose.position_m
-    return vector(figures.robots(optimum.given.study.robot, study.robot, region, where))
+        aim_m = study.pose.position_m
+    return vector(figures.robots(optimum.given.study.robot, study.robot, region, aim_m))
 
 
 def _axis(optimum: Optimum) -> tuple[float, str]:

@@ -27,7 +27,7 @@ from designer.selection.assignment import Assignment
 from designer.study import Study
 
 if TYPE_CHECKING:
-    from designer.analysis.uncertainty.uncertainty import SizeOdds, UncertaintyAnalysis
+    from designer.analysis.uncertainty import SizeOdds, UncertaintyAnalysis
     from designer.optimum.measures import Measure
 
 _MOST_LISTED = 6
@@ -109,7 +109,9 @@ def angle(angle_rad: float) -> str:
 
 def short_position(place: FloatArray) -> str:
     """Return a position such as ``(12.5, 3, −1)``, as a cell of a table has room for."""
-    return f"({', '.join(f'{value:.4g}' for value in place[:3])})".replace("-", "\N{MINUS SIGN}")
+    return f"({', '.join(f'{round(float(value), 2) + 0.0:.4g}' for value in place[:3])})".replace(
+        "-", "\N{MINUS SIGN}"
+    )
 
 
 STATES = {State.HOLDS: "holds", State.OPEN: "not known", State.FAILS: "does not hold"}

@@ -86,13 +86,13 @@ def pareto_front(values: FloatArray, counts: BoolArray) -> BoolArray:
     counts : ndarray of bool, shape (n_points,)
         Points that are looked at.
     """
-    left = np.flatnonzero(counts & np.isfinite(values).all(axis=1))
-    left = left[np.lexsort(values[left].T[::-1])]
+    candidates = np.flatnonzero(counts & np.isfinite(values).all(axis=1))
+    candidates = candidates[np.lexsort(values[candidates].T[::-1])]
     front = np.zeros(len(values), bool)
-    while len(left):
-        best, rest = values[left[0]], values[left]
-        front[left[(rest == best).all(axis=1)]] = True
-        left = left[(rest < best).any(axis=1)]
+    while len(candidates):
+        best, rest = values[candidates[0]], values[candidates]
+        front[candidates[(rest == best).all(axis=1)]] = True
+        candidates = candidates[(rest < best).any(axis=1)]
     return front
 
 

@@ -122,15 +122,15 @@ class Candidate(checked.Shown):
         return (*(self.figures.burden(o) for o in objectives), self.figures.mass_kg)
 
 
-def is_allowed(grade: Grade, named: Sequence[str] | None) -> bool:
-    """Tell whether a study that names these grades, or none, considers a grade."""
-    return grade.why_only_by_name is None if named is None else grade.id in named
-
-
 def candidates_of(selection: Selection, grades: Sequence[Grade], built: AsBuilt) -> list[Candidate]:
-    """Return every size of these grades that the sheave allows, with its figures as built."""
+    """Return every size of these grades that study and sheave allow, with its figures as built."""
     allowance = Allowance.of(selection, built.robot.winches)
-    sizes = ((g, s, allowance.efficiency(g, s.diameter_m)) for g in grades for s in g.sizes)
+    sizes = (
+        (grade, size, allowance.efficiency(grade, size.diameter_m))
+        for grade in grades
+        for size in grade.sizes
+        if grade.why_excluded(selection, size) is None
+    )
     return [
         Candidate(grade, size, built.of_products.cable(allowance.cable(grade, size)), efficiency)
         for grade, size, efficiency in sizes

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from designer.grades.grade import Grade
-from designer.model.price_list import Offer, PriceList
-from designer.selection.candidate import common_currency, is_allowed
+from designer.model.price_list import Offer
+from designer.selection.candidate import common_currency
 from designer.study import Selection
 
 
@@ -52,16 +52,12 @@ def with_prices(
     grade that the study allows has a price of its own; materials without a curve stay without.
     """
     if selection.price_list is not None:
-        return [_listed(grade, *_offers(selection.price_list, grade.id)) for grade in grades], None
-    allowed = [grade for grade in grades if is_allowed(grade, selection.grades)]
+        currency, offers_of = selection.price_list.currency, selection.price_list.offers_of
+        return [_listed(grade, currency, offers_of(grade.id)) for grade in grades], None
+    allowed = [grade for grade in grades if grade.why_excluded(selection) is None]
     if "cost" not in selection.objectives or common_currency(allowed) is not None:
         return grades, None
     return [_estimated(grade) for grade in grades], BORROWED
-
-
-def _offers(price_list: PriceList, grade_id: str) -> tuple[str, tuple[Offer, ...]]:
-    """Return the currency of a list and its offers of one grade."""
-    return price_list.currency, tuple(o for o in price_list.offers if o.grade == grade_id)
 
 
 @lru_cache(maxsize=2**14)  # the same sizes whenever asked: candidates are told apart by them
@@ -80,7 +76,7 @@ def _listed(grade: Grade, currency: str, offers: tuple[Offer, ...]) -> Grade:
 def offered(grades: Sequence[Grade], selection: Selection) -> list[Grade]:
     """Return the grades that a study allows, with the prices that it compares."""
     sold, _ = with_prices(grades, selection)
-    return [grade for grade in sold if is_allowed(grade, selection.grades)]
+    return [grade for grade in sold if grade.why_excluded(selection) is None]
 
 
 @lru_cache(maxsize=2**14)  # the same sizes whenever asked: candidates are told apart by them

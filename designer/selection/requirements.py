@@ -77,7 +77,7 @@ class Evaluation:
         """Return the same at that place with another cable; None where the place does not count."""
         assert self.requirement.place is not None
         loaded = self.loaded.on(robot, cable)
-        return _at_place(self.criterion, loaded, self.loads.workspace, self.requirement.place)
+        return at_place(self.criterion, loaded, self.loads.workspace, self.requirement.place)
 
 
 def loads_of(cases: Sequence[CaseResult]) -> list[CaseLoads]:
@@ -111,7 +111,7 @@ def evaluate(
     return tuple(evaluations)
 
 
-def _at_place(
+def at_place(
     criterion: Criterion, loaded: Loaded, workspace: Workspace, place: FloatArray
 ) -> Requirement | None:
     """Return a criterion at one place (n_coordinates,); None where the place does not count."""
@@ -155,7 +155,7 @@ def _evaluate_case(
             if np.isneginf(extreme.demand):  # no pose of the case counts
                 continue
             turned, place = _turned(criterion, loaded, workspace, extreme, again)
-            requirement = _at_place(criterion, turned, workspace, place)
+            requirement = at_place(criterion, turned, workspace, place)
             if requirement is not None:
                 yield Evaluation(criterion, loads, turned, requirement)
 

@@ -129,6 +129,9 @@ class SelectionResult(checked.Shown):
     proof : Proof or None
         What is proved of the chosen product, in the load case that governs; None where nothing was
         to be.
+    untrusted : Candidate or None
+        The best of what is excluded for the trust of its figures alone, where it would hold and be
+        better than the chosen product.
     usable : Usable or None
         What the sizes of the chosen grade serve; where none was chosen, of the grade that serves
         most. None where nothing was tried.
@@ -145,6 +148,7 @@ class SelectionResult(checked.Shown):
     not_tried: tuple[NotTried, ...] = ()
     usable: Usable | None = None
     proof: Proof | None = None
+    untrusted: Candidate | None = None
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:
@@ -158,6 +162,15 @@ class SelectionResult(checked.Shown):
         decides = self.objectives[0]
         rank = [(c.standing != "chosen", c.figures.burden(decides)) for c in members]
         return tuple(members[k] for k in sorted(range(len(members)), key=rank.__getitem__))
+
+    def best_of_materials(self, own: str | None) -> list[Candidate]:
+        """Return the best size that holds of each material: of a study's own one, then the best."""
+        decides = self.objectives[0]
+        best: dict[str | None, Candidate] = {}
+        holding = [outcome.best for outcome in self.outcomes if outcome.best is not None]
+        for candidate in sorted(holding, key=lambda c: c.figures.burden(decides)):
+            best.setdefault(candidate.grade.material, candidate)
+        return sorted(best.values(), key=lambda c: c.grade.material != own)
 
     def beside(self, candidate: Candidate) -> list[Candidate]:
         """Return a size with those beside it in its grade, if any, the thinnest first."""

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from designer.effects.design import AsBuilt
-from designer.grades.grade import Grade
+from designer.grades.grade import NOT_NAMED, Grade, Size
 from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Robot
 from designer.model.workspace import Workspace
@@ -25,7 +25,6 @@ from designer.selection.candidate import (
     candidates_of,
     common_currency,
     cost,
-    is_allowed,
 )
 from designer.selection.cases import (
     CaseResult,
@@ -80,19 +79,21 @@ def select(
     serve.
     """
     grades, price_estimate = with_prices(grades, selection)
-    allowed = [g for g in grades if is_allowed(g, selection.grades)]
+    excluded = [(g, why) for g in grades if (why := g.why_excluded(selection))]
+    allowed = [g for g in grades if g.why_excluded(selection) is None]
     cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
     run = _SelectionRun(
         cases, selection, built or AsBuilt(robot), allowed, reporter or SILENT, proof_s, explains
     )
     outcomes, not_tried = run.outcomes(allowed)
-    if selection.grades is None:
-        not_tried += [NotTried(g, None, g.why_only_by_name) for g in grades if g.why_only_by_name]
+    not_tried += [NotTried(g, None, why) for g, why in excluded if why != NOT_NAMED]
     chosen = next((c for o in outcomes for c in o.candidates if c.standing == "chosen"), None)
     alternatives: list[GradeOutcome] = []
     if chosen is None and explains:
-        not_allowed = [g for g in grades if g not in allowed and not g.why_only_by_name]
-        alternatives = run.outcomes(not_allowed, only_fitting=True)[0] if not_allowed else []
+        anything = replace(selection, grades=None, materials=(), trust="C")
+        more = [g for g, _ in excluded if g.why_excluded(anything) is None]
+        wider = replace(run, selection=anything)
+        alternatives = wider.outcomes(more, only_fitting=True)[0] if more else []
     return SelectionResult(
         outcomes=tuple(outcomes),
         chosen=chosen,
@@ -105,6 +106,7 @@ def select(
         not_tried=tuple(not_tried),
         usable=_usable(robot, workspace, outcomes, chosen) if explains else None,
         proof=None if chosen is None else run.proofs.get(chosen),
+        untrusted=run.better_untrusted(grades, chosen) if explains and chosen is not None else None,
     )
 
 
@@ -179,7 +181,10 @@ class _SelectionRun:
         solved = {id(candidate.size) for candidate in candidates}
         why = "the sheave is thinner than the rope, or than a fibre rope may be bent over"
         not_tried = [
-            NotTried(g, size, why) for g in grades for size in g.sizes if id(size) not in solved
+            NotTried(g, size, g.why_excluded(self.selection, size) or why)
+            for g in grades
+            for size in g.sizes
+            if id(size) not in solved
         ]
         front, allowed = self.choose(candidates)
         tried: list[tuple[Grade, list[Candidate], Candidate | None]] = []
@@ -196,6 +201,27 @@ class _SelectionRun:
                 outcomes.append(self._outcome(grade, of_grade, front, its_best, optimum))
                 advance(1)
         return outcomes, not_tried
+
+    def better_untrusted(self, grades: Sequence[Grade], chosen: Candidate) -> Candidate | None:
+        """Return the best of what is excluded for its trust alone; None unless it is better."""
+        trusting, decides = replace(self.selection, trust="C"), self.selection.objectives[0]
+
+        def lacks_trust(grade: Grade, size: Size) -> bool:
+            excluded, anyway = (grade.why_excluded(s, size) for s in (self.selection, trusting))
+            return excluded is not None and anyway is None
+
+        trimmed = [
+            replace(grade, sizes=sizes)
+            for grade in grades
+            if (sizes := tuple(size for size in grade.sizes if lacks_trust(grade, size)))
+        ]
+        if not trimmed:
+            return None
+        run = replace(self, selection=trusting, explains=False, proof_s=0.0)
+        front, _ = run.choose(run.sampled(trimmed))
+        best = next((c for c in front[:1] if c.rejected_by is None), None)
+        is_better = best and best.figures.burden(decides) < chosen.figures.burden(decides)
+        return best if is_better else None
 
     def _continuous_optima(
         self, grades: Sequence[tuple[Grade, Sequence[Candidate]]]

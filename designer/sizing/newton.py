@@ -98,7 +98,8 @@ def limit_ratio(robot: Robot, poses: Poses, material: Material) -> FloatArray:
 
     With more cables than degrees of freedom it is the least ratio that any internal forces reach.
 
-    NaN where that limit was not solved.
+    NaN where no taut cables balance a weightless platform, so that no limit exists, and where it
+    was not solved.
     """
     solution, _ = solve_task(robot, poses, _task(robot, poses, material, 0.0))
     return solution.load_factor.reshape(poses.shape)

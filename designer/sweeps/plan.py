@@ -28,8 +28,8 @@ from designer.documents.document import (
 from designer.documents.fields import FreeMapping, Text, WholeNumber, different, list_of
 from designer.documents.section import Section, schema_faults
 from designer.errors import Fault, InputError
-from designer.selection.candidate import common_currency, is_allowed
-from designer.selection.prices import with_prices
+from designer.selection.candidate import common_currency
+from designer.selection.prices import offered, with_prices
 from designer.study import Study
 from designer.sweeps.point import Base, value_at, why_no_value
 from designer.units import describe
@@ -283,8 +283,9 @@ def _attributes_of_prices(study: Study, base: Base) -> dict[str, str]:
     """Return ``units``, and ``estimate`` where a study borrows its prices; nothing without any."""
     if study.selection is None:
         return {}
-    sold, estimate = with_prices(base.catalogue(study).grades, study.selection)
-    currency = common_currency([g for g in sold if is_allowed(g, study.selection.grades)])
+    grades = base.catalogue(study).grades
+    _, estimate = with_prices(grades, study.selection)
+    currency = common_currency(offered(grades, study.selection))
     if currency is None:
         return {}
     if estimate is None:

@@ -11,13 +11,14 @@ from brute_force import G, utilisation
 from scipy.stats import binomtest
 from selection.ropes import rope
 
-from designer.analysis.uncertainty.draws import draws_at
-from designer.analysis.uncertainty.poses import GoverningCandidates, largest, searched
-from designer.analysis.uncertainty.shares import shares_of
-from designer.analysis.uncertainty.uncertainty import (
+from designer.analysis.uncertainty import (
+    GoverningCandidates,
     UncertaintyAnalysis,
+    draws_at,
     exact_interval,
-    uncertainty_dict,
+    largest,
+    searched,
+    shares_of,
     uncertainty_of,
 )
 from designer.documents.plain import finite
@@ -284,7 +285,7 @@ def test_what_is_not_held_is_not_enough_and_said() -> None:
     assert found.chosen.enough + found.chosen.not_held <= 300
     assert found.shares == ()
     assert "not held" in found.why_no_shares
-    plain = finite(uncertainty_dict(found))
+    plain = finite(found.to_dict())
     assert plain is not None
     assert plain["not_held"] == found.chosen.not_held
     assert plain["shares_reason"] == found.why_no_shares
@@ -298,9 +299,9 @@ def test_sizes_beside_and_the_same_again() -> None:
     assert names == ["4.4 mm", "4.55 mm", "6 mm"]
     down, own, up = (size.probability for size in one.sizes)
     assert down < own < up
-    assert finite(uncertainty_dict(one)) == finite(uncertainty_dict(same))
+    assert finite(one.to_dict()) == finite(same.to_dict())
     np.testing.assert_array_equal(one.chosen.utilisation, same.chosen.utilisation)
-    used, reported = one.chosen.utilisation, uncertainty_dict(one)["utilisation"]
+    used, reported = one.chosen.utilisation, one.to_dict()["utilisation"]
     shares = [np.mean(used <= reported[name]) for name in ("p05", "median", "p95", "largest")]
     assert shares == pytest.approx([0.05, 0.5, 0.95, 1.0], abs=0.005)
     other = odds(replace(study, uncertainty=replace(asked, seed=1)), chosen)

@@ -28,8 +28,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "selection"))
 from brute_force import G, utilisation
 from ropes import rope
 
-from designer.analysis.uncertainty.draws import draws_at
-from designer.analysis.uncertainty.uncertainty import uncertainty_of
+from designer.analysis.uncertainty import draws_at, uncertainty_of
 from designer.effects.design import AsBuilt
 from designer.model.cable import Material
 from designer.model.prism import Prism

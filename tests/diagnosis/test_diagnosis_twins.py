@@ -121,7 +121,7 @@ def test_two_effects_are_found_together(tmp_path) -> None:
     # A gain of the tension sensors is as good as the mass here (losses of 572.7 and 572.5), and an
     # error of setting up comes first.
     rivals = {finding.effect.id: finding.rivals for finding in found.findings}
-    assert rivals == {"pulley_radius": (), "tension_scale": ("platform_mass",)}
+    assert rivals == {"pulley_radius": (), "tension_scale": ("platform_mass", "platform_force")}
     assert {effect.id for effect in found.steps[0].instead} == set(rivals)
 
 

@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from designer.diagnosis.events import find_common, find_events, find_swapped
+from designer.diagnosis.events import (
+    find_common,
+    find_events,
+    find_spreading,
+    find_swapped,
+)
 from designer.diagnosis.structure import find_structure
 
 ROWS, CABLES = 100, 3
@@ -52,7 +57,7 @@ def test_noise_has_no_events() -> None:
     for seed in range(6):
         residual, predicted, covariates = readings(seed)
         assert events_in(residual, predicted, covariates) == []
-        assert find_swapped(residual, predicted) is None
+        assert find_swapped(residual, predicted, NUMBERS) is None
         assert find_common(residual, covariates, NUMBERS) is None
 
 
@@ -81,11 +86,11 @@ def test_exchanged_sensors_are_told() -> None:
     residual, predicted, _ = readings()
     read = predicted + residual
     read[:, [3, 5]] = read[:, [5, 3]]
-    found = find_swapped(read - predicted, predicted)
+    found = find_swapped(read - predicted, predicted, NUMBERS)
     assert found is not None
     assert found.text == "tension 1 and tension 3 exchanged with each other"
     read[:, [0, 1, 2]] = read[:, [2, 0, 1]]
-    found = find_swapped(read - predicted, predicted)
+    found = find_swapped(read - predicted, predicted, NUMBERS)
     assert found is not None
     assert found.text == (
         "length 1, length 2 and length 3 exchanged in a ring, "
@@ -93,11 +98,11 @@ def test_exchanged_sensors_are_told() -> None:
     )
     unread = read - predicted
     unread[:, 1] = np.nan
-    found = find_swapped(unread, predicted)
+    found = find_swapped(unread, predicted, NUMBERS)
     assert found is not None
     assert "ring" not in found.text
     biased = residual + 40.0
-    assert find_swapped(biased, predicted) is None
+    assert find_swapped(biased, predicted, NUMBERS) is None
 
 
 def test_readings_that_stand_off_together_have_something_in_common() -> None:
@@ -122,3 +127,35 @@ def test_many_readings_that_stand_off_are_looked_at_in_flat_memory() -> None:
     assert event is not None
     assert "100000 rows from 50001 to 150000" in event.text
     assert "quarter of x_m" not in event.text
+
+
+def test_two_cables_exchanged_from_a_row_on_are_told_with_it() -> None:
+    residual, predicted, _ = readings()
+    read = residual + predicted
+    read[40:, [0, 2]] = read[40:, [2, 0]]
+    read[40:, [3, 5]] = read[40:, [5, 3]]
+    event = find_swapped(read - predicted, predicted, NUMBERS)
+    assert event is not None
+    assert event.text == (
+        "length 1 and length 3 exchanged with each other from row 41 on, "
+        "tension 1 and tension 3 exchanged with each other from row 41 on"
+    )
+    read[10:14] += 500.0  # a few that are wrong otherwise
+    event = find_swapped(read - predicted, predicted, NUMBERS)
+    assert event is not None
+    assert "from row 41 on" in event.text
+
+
+def test_scatter_that_grows_is_told_and_a_drift_is_none() -> None:
+    rng = np.random.default_rng(3)
+    rows = np.arange(ROWS)[:, None]
+    growing = rng.normal(size=(ROWS, 2 * CABLES)) * (0.5 + 3.0 * rows / ROWS)
+    event = find_spreading(growing)
+    assert event is not None
+    assert event.text.startswith("scatter that changes as the rows go on, from ")
+    assert event.place == "scatter"
+    assert find_spreading(growing[:20]) is None  # too few to tell
+    for seed in range(20):
+        noise = np.random.default_rng(seed).normal(size=(ROWS, 2 * CABLES))
+        assert find_spreading(noise) is None
+        assert find_spreading(noise + 0.2 * rows) is None

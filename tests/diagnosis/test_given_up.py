@@ -10,9 +10,9 @@ from twins.logs import write_printer
 
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
-from designer.diagnosis.events import with_given_up
+from designer.diagnosis.events import with_given_up, wrong_poses
 from designer.diagnosis.result import DiagnosisVerdict
-from designer.diagnosis.structure import Structure
+from designer.diagnosis.structure import Event, Structure
 from designer.effects.effect import frame_size_m
 from designer.io.config import read_study
 from designer.measured.read import read_measured
@@ -49,6 +49,30 @@ def test_accidents_here_and_there_are_none(off: list[tuple[int, int]]) -> None:
     for place in off:
         residual[place] = 60.0
     assert texts(residual) == []
+
+
+def test_rows_in_which_all_cables_stand_off_have_wrong_poses() -> None:
+    residual = noise()
+    residual[[4, 20, 21], :4] = 90.0
+    residual[9, 5] = 300.0  # one cell
+    residual[12, [3, 5]] = 50.0  # a load that all cells feel
+    assert np.flatnonzero(wrong_poses(residual)).tolist() == [4, 20, 21]
+    (text,) = texts(residual)
+    assert text == (
+        "15 of 200 readings that stand off, by up to 300 times the noise, "
+        "of rows with wrong poses: 5, 21 to 22"
+    )
+    tensions = np.where(np.arange(6) < 3, np.nan, noise(40))
+    tensions[7, [3, 5]] = 40.0  # the only readings
+    assert np.flatnonzero(wrong_poses(tensions)).tolist() == [7]
+
+
+def test_plugs_that_are_exchanged_are_told_alone() -> None:
+    exchanged = Structure((), 1.0, events=(Event("length 1 and …", 1.0, 0.0, "mistake"),))
+    residual = noise()
+    residual[:, 1] = 500.0
+    structure = with_given_up(exchanged, residual, residual, np.arange(1, 41))
+    assert structure is exchanged
 
 
 def test_a_fit_that_makes_all_rows_together_worse_is_told() -> None:

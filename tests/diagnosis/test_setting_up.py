@@ -52,13 +52,15 @@ def assert_found_alone(found: Diagnosis, dataset: DataSet) -> None:
     """Name what is in the data, with its numbers; as a rival at most an end or drum of the cable.
 
     Over a small region, an end that moves along the cable is a homing error to first order, and a
-    slow wave of its drum, which has four numbers, is much alike.
+    slow wave of its drum, which has four numbers, is much alike. A point mass does not turn: a
+    marker beside it is a shift of all poses.
     """
     ((effect, true),) = dataset.effects.items()
     assert [finding.effect.id for finding in found.findings] == [effect]
     assert not found.is_unexplained
     (finding,) = found.findings
     ends = {f"{end} of cable {finding.effect.cable}" for end in ENDS}
+    ends |= {"tool_point"} if effect == "pose_shift" else set()
     assert set(finding.rivals) <= ends
     assert finding.effect.cable == true.get("cable")
     for name, estimate in finding.parameters.items():

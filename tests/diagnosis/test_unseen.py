@@ -31,9 +31,9 @@ def diagnosed(kind: str, seed: int, folder, robot: TwinRobot = YARD3) -> Diagnos
     return diagnose(case_in(troubled(robot, kind, seed), folder))
 
 
-def test_a_gain_is_clear_of_zero_by_twice_its_deviation() -> None:
-    assert Gain(0.05, 0.02).is_clear
-    assert not Gain(0.05, 0.03).is_clear
+def test_a_gain_is_clear_of_zero_by_its_deviation() -> None:
+    assert Gain(0.05, 0.03).is_clear
+    assert not Gain(0.05, 0.06).is_clear
     assert not Gain(0.005, 0.0001).is_clear
     assert not Gain(-0.1, 0.01).is_clear
 

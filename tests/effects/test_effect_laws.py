@@ -10,14 +10,17 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from designer.analysis.sensitivities import payload_scaled
 from designer.diagnosis.problem import readings_of as foretold
 from designer.effects.backlash import direction_of, dragged_m
 from designer.effects.effect import Effect, Readings, frame_size_m
 from designer.effects.registry import SHIPPED
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
+from designer.model.load_case import LoadCase, Wind
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.model.robot import Platform, Poses, Robot
+from designer.model.wrench_set import WrenchSet
 from designer.statics.inverse import solve_sagging
 
 CABLE = Cable(0.01, 0.4, 5e6, 12e3)
@@ -103,6 +106,12 @@ def test_drum_layering_integrates_what_a_turn_pays_out(machine, measured):
     [
         ("drum_scale", {"scale": 1.01}, LENGTH_M * 1.01, TENSION_N),
         ("length_offset", {"offset_2_m": 0.3}, LENGTH_M + np.array([0.0, 0.3, 0.0]), TENSION_N),
+        (
+            "winch_expansion",
+            {"coefficient_per_K": 1e-3},
+            LENGTH_M * np.array([[1.0], [1.01], [0.985]]),
+            TENSION_N,
+        ),
         ("tension_scale", {"gain": 1.1}, LENGTH_M, 1.1 * TENSION_N),
         ("tension_bias", {"offset_3_N": -5.0}, LENGTH_M, TENSION_N + np.array([0.0, 0.0, -5.0])),
         ("tension_length", {"compliance_m_per_N": 1e-4}, LENGTH_M + 1e-4 * TENSION_N, TENSION_N),
@@ -304,6 +313,93 @@ def test_poses_are_taken_back_to_the_robots_frame(machine, six_cable_robot):
     back = poses_with(robot, seen, "pose_frame", **frame)
     assert back.position_m == pytest.approx(true.position_m, rel=1e-12)
     assert back.rotation == pytest.approx(true.rotation, abs=1e-12)
+
+
+def test_a_marker_beside_the_origin_is_taken_back_to_it(machine, six_cable_robot):
+    """Six numbers where orientation is measured; of a point mass three, along fixed axes."""
+    true = Poses.at(np.column_stack([POSITION_M, np.full((3, 3), 0.2)]))
+    askew = Rotation.from_rotvec([0.01, -0.02, 0.03]).as_matrix()
+    marker_m = np.array([0.1, -0.2, 0.3])
+    seen = Poses(true.position_m + true.rotation @ askew @ marker_m, true.rotation @ askew)
+    values = {"x_m": 0.1, "y_m": -0.2, "z_m": 0.3}
+    turn = {"rx_rad": 0.01, "ry_rad": -0.02, "rz_rad": 0.03}
+    back = poses_with(Machine(six_cable_robot, CABLE), seen, "tool_point", **values, **turn)
+    assert back.rotation == pytest.approx(true.rotation, abs=1e-12)
+    offset = true.rotation @ (askew @ marker_m - marker_m)
+    assert back.position_m == pytest.approx(true.position_m + offset, abs=1e-12)
+    assert [p.name for p in effect_of(machine, "tool_point").parameters] == [*values]
+    back = poses_with(machine, Poses.at(POSITION_M), "tool_point", **values)
+    assert back.position_m == pytest.approx(POSITION_M - marker_m, rel=1e-15)
+
+
+def test_heights_off_by_the_square_of_the_distance_are_taken_back(machine):
+    tracker_m = np.array([-30.0, 5.0, 1.5])
+    away_m = np.linalg.norm(POSITION_M - tracker_m, axis=1)
+    seen_m = POSITION_M + np.outer(2e-4 * away_m**2, [0.0, 0.0, 1.0])
+    place = {"x_m": -30.0, "y_m": 5.0, "z_m": 1.5}
+    back = poses_with(machine, Poses.at(seen_m), "pose_distortion", gain_per_m=2e-4, **place)
+    assert back.position_m == pytest.approx(POSITION_M, abs=1e-9)
+
+
+def test_a_constant_force_is_one_that_no_load_case_replaces(machine):
+    pushed = machine_with(machine, "platform_force", x_N=30.0, z_N=-12.0).robot
+    assert machine.robot.loads_N()[0, :3] - pushed.loads_N()[0, :3] == pytest.approx([30, 0, -12])
+    case = LoadCase("own", wrench_N=np.array([0.0, 100.0, 0.0, 0.0, 0.0, 0.0]))
+    loaded = case.under(pushed, CABLE).robot
+    assert case.under(machine.robot, CABLE).robot.pull_N - loaded.pull_N == pytest.approx(
+        [30, 0, -12, 0, 0, 0]
+    )
+    flat = replace(machine.robot, exit_points_m=EXIT_POINTS_M * [1.0, 0.0, 1.0], is_planar=True)
+    names = [p.name for p in effect_of(replace(machine, robot=flat), "platform_force").parameters]
+    assert names == ["x_N", "z_N"]
+
+
+def test_a_constant_moment_stays_beside_the_wrench_of_a_load_case(machine, six_cable_robot):
+    body = Machine(six_cable_robot, CABLE)
+    turned = machine_with(body, "platform_moment", x_Nm=4.0, z_Nm=-7.0).robot
+    assert turned.pull_N - six_cable_robot.pull_N == pytest.approx([0, 0, 0, -4, 0, 7])
+    several = WrenchSet(np.array([[0.0, 100.0, 0.0, 1.0, 0.0, 0.0]]))
+    own = several.wrenches_N[0]
+    for case in (LoadCase("own", wrench_N=own), LoadCase("set", wrench_set=several)):
+        (loaded,) = case.on(turned, CABLE)
+        assert loaded.robot.platform.wrench_N == pytest.approx([0, 100, 0, 5, 0, -7])
+        # Twice the payload is twice all that acts, the moment counted once.
+        twice = payload_scaled(loaded, 2.0)
+        (twice,) = twice.case.on(*twice.bare)
+        assert twice.robot.platform.wrench_N == pytest.approx([0, 200, 0, 10, 0, -14])
+    assert not any(effect.id == "platform_moment" for effect in SHIPPED.of(machine))
+    flat = machine.robot.exit_points_m * [1.0, 0.0, 1.0]
+    planar = replace(six_cable_robot, exit_points_m=np.tile(flat, (2, 1)), is_planar=True)
+    (about,) = effect_of(replace(body, robot=planar), "platform_moment").parameters
+    assert about.name == "y_Nm"
+
+
+def test_wind_that_is_measured_pushes_as_that_of_a_load_case_does(machine, measured):
+    """One density of air."""
+    blown = replace(measured, wind_m_per_s=np.tile([20.0, 0.0, 0.0], (3, 1)))
+    found = foretold(machine_with(machine, "wind_drag", drag_area_m2=0.6), blown.poses, blown)
+    platform = replace(machine.robot.platform, drag_area_m2=0.6)
+    case = LoadCase("wind", wind=Wind(20.0, 0.0))
+    loaded = case.under(replace(machine.robot, platform=platform), CABLE, np.array([1.0, 0, 0]))
+    expected = solve_sagging(loaded.robot, blown.poses, CABLE)
+    assert found.tension_N == pytest.approx(expected.exit_tension_N, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("density", "believed", "doubted"),
+    [
+        (7800.0, (1.2e-5, 4e-5), (-2.3e-5, 1e-4)),
+        (4600.0, (1.2e-5,), (-1e-6,)),
+        (980.0, (-1.2e-5, 1e-4), (-8e-5,)),
+        (math.nan, (-1.2e-5, 1e-4), (-8e-5,)),
+    ],
+)
+def test_how_much_a_rope_may_grow_is_told_by_its_material(machine, density, believed, doubted):
+    (growth,) = effect_of(
+        replace(machine, rope_density_kg_per_m3=density), "thermal_expansion"
+    ).parameters
+    assert all(map(growth.is_plausible, believed))
+    assert not any(map(growth.is_plausible, doubted))
 
 
 def test_a_planar_robot_is_shifted_in_its_plane(machine):

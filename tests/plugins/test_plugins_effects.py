@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ from designer.cli.commands import main
 from designer.cli.schema import schema
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose_study
-from designer.effects.effect import Readings
+from designer.effects.effect import Effect, Readings
 from designer.effects.load import find_flaw, load_effects
 from designer.effects.registry import EFFECTS, SHIPPED, KnownEffects
 from designer.errors import EffectError, InputError
@@ -92,10 +93,11 @@ def test_ours_which_are_not_examined_at_each_start_have_no_flaw() -> None:
     assert [find_flaw(effect) for effect in EFFECTS] == [""] * len(EFFECTS)
 
 
-def test_every_file_with_an_effect_is_registered_under_its_name() -> None:
+def test_every_effect_of_a_file_is_registered() -> None:
     files = Path(effects.__file__).parent.glob("*.py")
-    with_effect = {path.stem for path in files if "\nEFFECT = " in path.read_text(encoding="utf-8")}
-    assert with_effect == SHIPPED.by_id.keys()
+    modules = [import_module(f"designer.effects.{path.stem}") for path in files]
+    written = [e for module in modules for e in vars(module).values() if isinstance(e, Effect)]
+    assert {effect.id for effect in written} == SHIPPED.by_id.keys()
 
 
 @pytest.mark.slow

@@ -159,6 +159,7 @@ def test_what_the_budget_leaves_is_said(fast_robot: Robot, steel: Material) -> N
     assert told[-1] == 1.0 > told[0]  # of the budget, of which the last of the volume takes most
     assert 0.0 < proof.fraction < 1.0
     assert proof.boxes == 2000
+    assert proof.reason == "2000 boxes ended it before all was decided"
 
 
 def test_pulleys_are_told_not_to_be_proved(fast_robot: Robot, steel: Material) -> None:
@@ -195,7 +196,7 @@ def test_the_budget_of_volumes_begins_when_all_is_compiled(
         return bound(*arguments)
 
     monkeypatch.setattr(Encloser, "bound", slow_at_first)
-    monkeypatch.setattr("designer.proof.servable.time.monotonic", lambda: passed_s[0])
+    monkeypatch.setattr("designer.proof.prove.time.monotonic", lambda: passed_s[0])
     found = servable(fast_robot, Space(region, LEVEL), Budget(boxes=400, seconds=20.0))
     assert found is not None
     assert found.boxes == 400

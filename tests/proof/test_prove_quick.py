@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -152,3 +154,22 @@ def test_another_process_compiles(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     assert compile_apart().wait() == 0
     assert [*tmp_path.rglob("*bound_range*.nbc")]
+
+
+def test_a_proof_is_the_same_however_fast_the_clock_goes(
+    fast_robot: Robot, steel: Material, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Boxes end it unless a time is given, which is told where it did."""
+    cable = steel.cable(0.06)
+    calm = prove(fast_robot, cable, PART, 0.5, Budget(boxes=900))
+    now = time.monotonic()
+    ticks = count()
+    monkeypatch.setattr("designer.proof.prove.time.monotonic", lambda: now + 1e4 * next(ticks))
+    hurried = prove(fast_robot, cable, PART, 0.5, Budget(boxes=900))
+    assert hurried.status == calm.status
+    assert hurried.boxes == calm.boxes
+    assert hurried.bound == calm.bound
+    whole = Space(Prism.over(fast_robot.exit_points_m, 10.35, (-200.0, -40.0)), Orientations())
+    cut = prove(fast_robot, cable, whole, 0.5, Budget(seconds=20.0), enough=1.001)
+    assert cut.status == "partial"
+    assert cut.reason == "the time given, 20 s, ended it before all was decided"

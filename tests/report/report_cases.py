@@ -13,7 +13,7 @@ workspace:
   region: {{prism: anchors, inset: {inset}, z: [-200, -40]}}
   samples: 300
   hangs_below: {hangs_below}
-  sag: none
+  sag: 50 %
 selection: {{grades: {grades}, safety_factor: 2}}
 """
 DEFAULTS = {

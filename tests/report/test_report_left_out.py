@@ -38,7 +38,7 @@ def test_both_kinds_of_problem_are_told_once(analyses: dict[str, Analysis]) -> N
 
 def test_few_grades_are_named_and_many_are_counted(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
-    names = [g.id for g in analysis.catalogue.grades if not g.why_only_by_name]
+    names = [g.id for g in analysis.catalogue.grades]
     few, many = (
         said(section(Drawings(_allowing(analysis, tuple(some))), "left-out"))
         for some in (names[3:], names[:3])

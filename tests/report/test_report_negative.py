@@ -88,7 +88,7 @@ def test_grade_ends_too_thin(analyses: dict[str, Analysis]) -> None:
 @pytest.mark.parametrize("case", ["positive", "exclude"])
 def test_a_yes_needs_no_advice(analyses: dict[str, Analysis], case: str) -> None:
     page = page_of(analyses[case])
-    assert page.verdict.title == "Yes"
+    assert page.verdict.title.startswith("Yes, ")
     assert page.reasons == ()
     assert page.actions == ()
 

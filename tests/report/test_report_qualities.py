@@ -79,7 +79,7 @@ def test_sections_say_what_was_found(kept: Analysis, not_kept: Analysis) -> None
     assert statements(good.section("clearance"))["The clearance is kept"].tone == "good"
     found = statements(bad.section("clearance"))
     assert "of the samples" in found["The clearance is not kept"].text
-    assert "No pose was found that is not stable" in statements(bad.section("stiffness"))
+    assert "All searched poses are stable" in statements(bad.section("stiffness"))
     ids = [section.id for section in bad.sections]
     assert ids.index("stiffness") + 1 == ids.index("clearance")
     html = render_html(bad)
@@ -134,7 +134,7 @@ workspace: {region: {points: [[15, 9, 4]]}, clearance: 0.1 m}
 """
     analysis = solve(text)
     shown = section(Drawings(analysis, draws=True), "clearance")
-    assert "There is nothing to compare" in statements(shown)
+    assert "No clearance to evaluate" in statements(shown)
     assert tables(shown) == []
     assert result_dict(analysis)["workspace"]["interference"]["min_distance_m"] is None
 

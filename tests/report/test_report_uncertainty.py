@@ -10,9 +10,7 @@ import numpy as np
 import pytest
 from report_parts import Statement, cells, paragraphs, pictures, statements, tables
 
-from designer.analysis.uncertainty.poses import Checked
-from designer.analysis.uncertainty.shares import Share
-from designer.analysis.uncertainty.uncertainty import SizeOdds, UncertaintyAnalysis
+from designer.analysis.uncertainty import Checked, Share, SizeOdds, UncertaintyAnalysis
 from designer.model.uncertainty import Normal, Uncertainty, Uniform
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
@@ -61,12 +59,12 @@ def said_first(found: UncertaintyAnalysis) -> Statement:
 
 @pytest.mark.parametrize(
     ("chosen", "why"),
-    [(None, "no rope was chosen"), ("5 mm", "the study has every input as certain")],
+    [(None, "no rope was chosen"), ("5 mm", "the study states no uncertainty")],
 )
 def test_what_was_asked_for_and_not_drawn_is_said(chosen: str | None, why: str) -> None:
     asked = shown(None, chosen=chosen, asked=Uncertainty(payload=Uniform(0.0, 0.0)))
     assert asked is not None
-    assert paragraphs(asked) == [f"Nothing was drawn: {why}."]
+    assert paragraphs(asked) == [f"Not computed: {why}."]
     assert shown(None) is None
 
 

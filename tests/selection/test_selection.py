@@ -205,7 +205,7 @@ def test_some_grades_are_taken_only_by_name(kind: str, fast_robot, workspace) ->
 
 @pytest.mark.parametrize("construction", ["7x19", "19x7", "18x19, compacted strands", "1 braid"])
 def test_ropes_are_no_single_strands(construction: str) -> None:
-    assert replace(rope("a", [20.0]), construction=construction).why_only_by_name is None
+    assert replace(rope("a", [20.0]), construction=construction).why_only_by_name() is None
 
 
 @pytest.mark.slow

@@ -23,6 +23,7 @@ from designer.model.cable import Cable, Cables, Material
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
 from designer.physics import catenary
+from designer.sizing import scp
 from designer.sizing.loop import size_by_loop
 from designer.sizing.newton import Sizing, limit_ratio, size_poses
 from designer.sizing.nlp import size_by_nlp
@@ -54,8 +55,12 @@ def optimality_of(robot, pose, material, diameter_m: float, force_x_N) -> tuple[
 
 @pytest.mark.slow
 @pytest.mark.parametrize("weights", WEIGHTS)
-def test_random_poses_are_solved_and_optimal(weights) -> None:
-    """The conditions are written down and evaluated by other code than the kernel's."""
+def test_random_poses_are_solved_and_optimal(weights, monkeypatch) -> None:
+    """The conditions are written down and evaluated by other code than the kernel's.
+
+    The kernel's barrier leaves pulls at the largest sag up to 3e-5 above it.
+    """
+    monkeypatch.setattr(scp, "_AT_BOUND", 1e-4)
     poses, material = cogiro_poses(300, 5), steel(weights)
     sizing = size_poses(COGIRO, poses, material)
     assert np.all(sizing.statics.verdict == Verdict.SOLVED)
@@ -74,10 +79,13 @@ def test_sizing_is_that_of_the_convex_programmes(case, weights) -> None:
     sizing = size_poses(robot, poses, steel(weights))
     solved = np.nonzero(sizing.statics.is_solved)[0]
     assert len(solved) > 0
+    at_largest_sag = sag_ratio(sizing.statics).max(axis=-1) > 0.9999 * robot.sag_max
     for k in solved:
         reference = size_by_scp(robot, one(poses, k), steel(weights))
         assert reference.has_converged
-        assert sizing.diameter_m[k] == pytest.approx(reference.diameter_m, rel=1e-8)
+        # The kernel's barrier leaves pulls at the largest sag up to 3e-5 above it.
+        close = 2e-6 if at_largest_sag[k] else 1e-8
+        assert sizing.diameter_m[k] == pytest.approx(reference.diameter_m, rel=close)
         assert sizing.statics.length_m[k] == pytest.approx(reference.length_m, rel=1e-4)
 
 
@@ -104,7 +112,7 @@ class InternalForces:
         self.X, self.D = geometry.horizontal_distance_m, geometry.drop_m
         self.matrix = structure_matrix(robot, geometry)
         self.load = load_wrench_N(robot, pose)
-        self.cable = cable
+        self.cable, self.sag_max = cable, robot.sag_max
         columns = self.matrix[:, 0::2] * self.X - self.matrix[:, 1::2] * self.D
         pairs = [(a, b) for a in range(8) for b in range(a)]
         quality = [np.linalg.cond(np.delete(columns, pair, axis=1)) for pair in pairs]
@@ -112,13 +120,19 @@ class InternalForces:
         self.rest = [i for i in range(8) if i not in self.chosen]
 
     def forces(self, pull_N: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Wrench that is left, and largest tension over allowable, of pulls (..., 8) [N/m]."""
+        """Wrench that is left, and largest tension over allowable, of pulls (..., 8) [N/m].
+
+        Infinite where a cable sags by more than it may.
+        """
         EA, w = self.cable.axial_stiffness_N, self.cable.weight_N_per_m
         length, force_z = catenary.length_and_force_z(pull_N, self.X, self.D, EA, w)
         force_x = pull_N * self.X
         ends = catenary.end_tensions_N(length, force_x, force_z, w)
         pairs = np.stack([force_x, force_z], axis=-1).reshape(*pull_N.shape[:-1], 16)
         largest = (np.maximum(*ends) / self.cable.allowable_tension_N).max(axis=-1)
+        sag = catenary.sag_m(length, force_x, force_z, EA, w, self.X, self.D)
+        is_taut = (sag <= self.sag_max * np.hypot(self.X, self.D) * (1.0 + 1e-9)).all(axis=-1)
+        largest = np.where(is_taut, largest, np.inf)
         return pairs @ self.matrix.T - self.load, largest
 
     def best(self, internal_N: np.ndarray, start_N: np.ndarray) -> np.ndarray:
@@ -188,14 +202,14 @@ def test_no_pose_is_solved_with_a_residual(weights) -> None:
     fixed = solve_sagging(COGIRO, poses, steel(weights).cable(0.004))
     for statics in (sizing.statics, fixed):
         solved = statics.is_solved
-        assert 0.2 < solved.mean() < 0.9
+        assert 0.1 < solved.mean() < 0.9
         closure = statics.closure_residual_m()[solved] / statics.length_m[solved]
         balance = np.abs(statics.equilibrium_residual_N()[solved]).max(axis=1)
         assert closure.max() < 1e-8
         assert (balance / statics.largest_tension_N[solved]).max() < 1e-8
         assert np.isnan(statics.length_m[~solved]).all()
         # There is not always a proof that no section will do, least of all with heavy cables.
-        unproved = 0.003 if weights == 1.0 else 0.01
+        unproved = 1e-3
         assert (statics.verdict == Verdict.NOT_CONVERGED).mean() < unproved
     allowable = steel(weights).allowable_stress_Pa * np.pi / 4 * sizing.diameter_m**2
     use = (sizing.statics.largest_tension_N / allowable)[sizing.statics.is_solved]
@@ -209,7 +223,9 @@ def test_verdicts_beyond_what_any_section_holds() -> None:
     sizing, ratio = size_poses(COGIRO, poses, heavy), limit_ratio(COGIRO, poses, heavy)
     unheld = {Verdict.NO_FINITE_CABLE, Verdict.NOT_CONVERGED}
     assert set(sizing.statics.verdict) <= {Verdict.SOLVED, *unheld}
-    assert np.array_equal(sizing.statics.is_solved, ratio < 1.0)
+    exists = ~np.isnan(ratio)  # without a load to pull them, some poses' cables cannot be taut
+    assert 0.9 < exists.mean() < 1.0
+    assert np.array_equal(sizing.statics.is_solved[exists], ratio[exists] < 1.0)
     assert set(size_poses(COGIRO, poses, steel(300.0)).statics.verdict) <= unheld
     above = Poses.at([[0.0, 0.0, 9.0], [20.0, 0.0, 2.0]])
     assert list(size_poses(COGIRO, above, steel()).statics.verdict) == [Verdict.OUTSIDE_HULL] * 2

@@ -16,7 +16,7 @@ from twins.hanging import hang
 from twins.physics import Equilibrium, Machine, least_tensions_N, solve
 from twins.robots import TwinRobot
 
-AIR_KG_PER_M3 = 1.225
+AIR_KG_PER_M3 = 1.25
 
 Parameters = dict[str, float]
 Effects = dict[str, Parameters]
@@ -204,6 +204,14 @@ def _base_tilt(machine: Machine, scene: Scene, p: Parameters) -> Machine:
     return replace(machine, gravity=upright.inv().apply(machine.gravity))
 
 
+def _platform_force(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    return replace(machine, force_N=machine.force_N + np.array([p[f"{a}_N"] for a in "xyz"]))
+
+
+def _platform_moment(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    return replace(machine, moment_Nm=machine.moment_Nm + [p[f"{a}_Nm"] for a in "xyz"])
+
+
 def _bending_stiffness(machine: Machine, scene: Scene, p: Parameters) -> Machine:
     return replace(machine, bending_N_m2=_each(machine, p["flexural_rigidity_N_m2"]))
 
@@ -254,6 +262,8 @@ MACHINE: dict[str, Callable[[Machine, Scene, Parameters], Machine]] = {
     "cable_pulley_radius": _cable_pulley_radius,
     "wind_drag": _wind_drag,
     "base_tilt": _base_tilt,
+    "platform_force": _platform_force,
+    "platform_moment": _platform_moment,
     "bending_stiffness": _bending_stiffness,
     "tower_settles": _tower_settles,
     "mast_compliance": _mast_compliance,
@@ -321,6 +331,13 @@ def _drum_layering(readings: Readings, scene: Scene, p: Parameters) -> Readings:
 
 def _drum_scale(readings: Readings, scene: Scene, p: Parameters) -> Readings:
     return replace(readings, length_m=readings.length_m * p["scale"])
+
+
+def _winch_expansion(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    """A drum of another size counts other turns: they are what is known of the rope."""
+    radius = 0.25 / (1 + p["coefficient_per_K"] * (scene.temperature_C - 20.0))
+    turns = readings.length_m / (2 * np.pi * radius[:, None])
+    return replace(readings, length_m=turns * 2 * np.pi * 0.25)
 
 
 def _tension_length(readings: Readings, scene: Scene, p: Parameters) -> Readings:
@@ -414,6 +431,7 @@ READING: dict[str, Callable[[Readings, Scene, Parameters], Readings]] = {
     "encoder_on_rope": _encoder_on_rope,
     "drum_layering": _drum_layering,
     "drum_scale": _drum_scale,
+    "winch_expansion": _winch_expansion,
     "tension_length": _tension_length,
     "winch_scale": _winch_scale,
     "length_offset": _length_offset,
@@ -446,11 +464,28 @@ def _pose_frame(position: np.ndarray, turn: np.ndarray, p: Parameters) -> Pose:
     return p["scale"] * rotation.apply(position) + _vector(p), turned
 
 
+def _tool_point(position: np.ndarray, turn: np.ndarray, p: Parameters) -> Pose:
+    """A marker beside the body's origin, its axes askew: where it is, and how it is turned."""
+    body = Rotation.from_rotvec(turn)
+    askew = Rotation.from_rotvec([p.get(f"r{axis}_rad", 0.0) for axis in "xyz"])
+    return position + body.apply(_vector(p)), (body * askew).as_rotvec()
+
+
+def _pose_distortion(position: np.ndarray, turn: np.ndarray, p: Parameters) -> Pose:
+    """A line of sight that is an arc: the target seems lifted by what the arc falls below it."""
+    away = np.linalg.norm(position - _vector(p), axis=1)
+    radius = 0.5 / p["gain_per_m"]
+    lift = radius - np.sign(radius) * np.sqrt(radius**2 - away**2)
+    return position + lift[:, None] * [0.0, 0.0, 1.0], turn
+
+
 Pose = tuple[np.ndarray, np.ndarray]
 POSE: dict[str, Callable[[np.ndarray, np.ndarray, Parameters], Pose]] = {
     "pose_shift": _pose_shift,
     "pose_scale": _pose_scale,
     "pose_frame": _pose_frame,
+    "tool_point": _tool_point,
+    "pose_distortion": _pose_distortion,
 }
 
 

@@ -39,8 +39,8 @@ class Machine:
         False for a point mass.
     gravity : array (3,)
         Gravity [m/s²].
-    force_N : array (rows or 1, 3)
-        Force on the platform beside its weight [N].
+    force_N, moment_Nm : array (rows or 1, 3)
+        Force on the platform beside its weight, at the body's origin, and moment [N, N·m].
     toe_strain, toe_tension_N : float
         Strain is T/EA + toe_strain (1 - exp(-T/toe_tension_N)).
     pulley_radius_m : array
@@ -65,6 +65,7 @@ class Machine:
     centre_m: np.ndarray = field(default_factory=lambda: np.zeros(3))
     gravity: np.ndarray = field(default_factory=lambda: np.array([0.0, 0.0, -GRAVITY]))
     force_N: np.ndarray = field(default_factory=lambda: np.zeros((1, 3)))
+    moment_Nm: np.ndarray = field(default_factory=lambda: np.zeros((1, 3)))
     toe_strain: float = 0.0
     toe_tension_N: float = 1.0
     pulley_radius_m: np.ndarray | float = 0.0
@@ -210,7 +211,7 @@ def _load(machine: Machine, rotation: np.ndarray) -> np.ndarray:
     if not machine.has_moments:
         return force
     # The extra force (wind) acts at the body's origin, the weight at the centre of mass.
-    moment = np.cross(rotation @ machine.centre_m, weight)
+    moment = np.cross(rotation @ machine.centre_m, weight) + machine.moment_Nm
     return np.concatenate([force, moment], axis=-1)
 
 

@@ -91,6 +91,7 @@ class TwinRobot:
 
         The size of a scale or gain is |log(scale)|; of a vector its norm; of several offsets their
         rms; of a frame its shift, with a turn and a scale that move the exit points about as far;
+        of a distortion its gain, the tracker being behind an exit point;
         of anything else its value. Modulus gets softer and mass per length heavier, as ropes
         do, and because the other way the effect is bounded.
         """
@@ -104,6 +105,8 @@ class TwinRobot:
         vector = dict(zip(("x_m", "y_m", "z_m"), (size * direction).tolist(), strict=True))
         offsets = (size * spread).tolist()
         turn = size / np.ptp(self.exit_m, axis=0).max() * _unit(rng.normal(size=3))
+        tracker = self.exit_m[int(cable) - 1]
+        beside = {"x_m": 1.1 * tracker[0], "y_m": 1.1 * tracker[1], "z_m": 1.5}
         turns = dict(zip(("rx_rad", "ry_rad", "rz_rad"), turn.tolist(), strict=True))
         return {
             "pulley_radius": lambda: {"radius_m": size},
@@ -123,6 +126,11 @@ class TwinRobot:
             "pose_shift": lambda: vector,
             "pose_scale": lambda: {"scale": float(np.exp(sign * size))},
             "pose_frame": lambda: {**vector, **turns, "scale": 1.0 + float(turn[0])},
+            "tool_point": lambda: {**vector, **(turns if self.attachment_m else {})},
+            "pose_distortion": lambda: {"gain_per_m": float(sign * size), **beside},
+            "platform_force": lambda: {f"{a[0]}_N": v for a, v in vector.items()},
+            "platform_moment": lambda: {f"{a[0]}_Nm": v for a, v in vector.items()},
+            "winch_expansion": lambda: {"coefficient_per_K": float(sign * size)},
             "length_offset": lambda: {f"offset_{k}_m": v for k, v in enumerate(offsets, 1)},
             "drum_scale": lambda: {"scale": float(np.exp(sign * size))},
             "drum_layering": lambda: {"radius_gain_per_m": size},
@@ -159,6 +167,7 @@ def _unit(vector: np.ndarray) -> np.ndarray:
 
 _COMMON = {
     "thermal_expansion": (2e-6, 2.5e-5),
+    "winch_expansion": (2e-6, 2.5e-5),
     "elastic_modulus": (0.03, 0.6),
     "linear_mass": (0.1, 0.7),
     "drum_scale": (1e-4, 1e-2),
@@ -196,6 +205,9 @@ YARD3 = TwinRobot(
         "winch_zero": (0.002, 0.3),
         "pose_shift": (0.002, 0.3),
         "pose_frame": (0.002, 0.3),
+        "tool_point": (0.002, 0.3),
+        "pose_distortion": (2e-6, 1e-3),
+        "platform_force": (0.5, 50.0),
         "length_offset": (0.001, 0.1),
         "drum_layering": (5e-5, 5e-3),
         "creep": (1e-5, 1e-3),
@@ -236,6 +248,9 @@ FAST3 = TwinRobot(
         "winch_zero": (0.01, 1.0),
         "pose_shift": (0.01, 1.0),
         "pose_frame": (0.01, 1.0),
+        "tool_point": (0.01, 1.0),
+        "pose_distortion": (1e-7, 2e-5),
+        "platform_force": (5.0, 500.0),
         "length_offset": (0.005, 0.5),
         "drum_layering": (1e-6, 3e-4),
         "creep": (5e-6, 1e-3),
@@ -279,6 +294,7 @@ HALL6 = TwinRobot(
         "pulley_radius": (0.003, 0.1),
         "platform_mass": (0.5, 20.0),
         "centre_of_mass_offset": (0.003, 0.15),
+        "platform_moment": (0.2, 20.0),
         "anchor_offset": (0.002, 0.1),
         "attachment_offset": (0.002, 0.1),
         "cable_pulley_radius": (0.003, 0.1),
@@ -286,6 +302,9 @@ HALL6 = TwinRobot(
         "winch_zero": (0.001, 0.1),
         "pose_shift": (0.001, 0.1),
         "pose_frame": (0.001, 0.1),
+        "tool_point": (0.001, 0.1),
+        "pose_distortion": (5e-6, 2e-3),
+        "platform_force": (0.5, 50.0),
         "length_offset": (0.0005, 0.05),
         "drum_layering": (5e-5, 5e-3),
         "creep": (1e-5, 1e-3),

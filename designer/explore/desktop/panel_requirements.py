@@ -97,7 +97,9 @@ class PanelRequirements(QWidget):
         self.table.rows.show(() if ropes is None else ropes.requirements)
         answer = None if ropes is None else ropes.answer
         self.answer.setText(_NOTHING if ropes is None else answer_words(ropes))
-        restyle(self.answer, "role", "muted" if answer is None else _ROLES[answer])
+        role = "muted" if answer is None else _ROLES[answer]
+        is_subject = ropes is not None and ropes.terms is not None and ropes.terms.subject_to
+        restyle(self.answer, "role", "doubt" if is_subject else role)
 
     def _go(self, index: QModelIndex) -> None:
         place = self.table.row_at(index).place
@@ -108,8 +110,11 @@ class PanelRequirements(QWidget):
 def answer_words(ropes: Ropes) -> str:
     """Return the answer to the study with how many requirements it follows from."""
     count = fmt.plural(len(ropes.requirements), "requirement")
-    if ropes.answer is Answer.YES:
-        return f"Yes: {count}, all met."
+    if ropes.answer is Answer.YES and ropes.terms is not None:
+        terms = ropes.terms
+        reasons = (condition.sentences for condition in terms.subject_to)
+        head = f"{terms.head(ropes.answer)}: {count}, all met."
+        return " ".join([head, *reasons, terms.omissions(ropes.answer)]).rstrip()
     n_failing, n_open = (
         sum(requirement.state is state for requirement in ropes.requirements)
         for state in (State.FAILS, State.OPEN)

@@ -29,6 +29,7 @@ class Theme:
     muted: str
     accent: str
     good: str
+    amber: str
     warning: str
     cable: str
     left_out: str
@@ -46,6 +47,7 @@ LIGHT = Theme(
     muted="#646c76",
     accent=palette.SAG,
     good="#00795c",
+    amber="#7a5c00",
     warning="#b84f00",
     cable=palette.INK,
     left_out=palette.LEFT_OUT,
@@ -62,6 +64,7 @@ DARK = Theme(
     muted="#9ba5b1",
     accent="#56b4e9",
     good="#3fc79a",
+    amber="#e5c04a",
     warning="#ff9548",
     cable="#f4f6f8",
     left_out="#4a515a",
@@ -136,7 +139,7 @@ QStatusBar {{ border-top: 1px solid {theme.border}; }}
 QToolBar {{ border: none; border-bottom: 1px solid {theme.border}; spacing: 6px; padding: 3px; }}
 QLabel[role="muted"], QCheckBox[role="muted"] {{ color: {theme.muted}; }}
 QLabel[role="fault"] {{ color: {theme.warning}; }}
-QLabel[role="doubt"] {{ font-style: italic; }}
+QLabel[role="doubt"] {{ font-style: italic; color: {theme.amber}; }}
 QLabel[role="good"] {{ color: {theme.good}; }}
 QLabel[role="heading"] {{ font-weight: 600; }}
 QLabel[role="title"] {{ font-size: 18pt; font-weight: 600; }}

@@ -6,6 +6,7 @@ in ``effects`` in `designer.io.config.effects`.
 
 from __future__ import annotations
 
+from math import inf
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -28,6 +29,7 @@ from designer.io.config import regions
 from designer.io.config.columns import Columns
 from designer.io.config.machine import ConfiguredCable, LoadCaseSection, RobotSection
 from designer.io.config.uncertainty import UncertaintySection
+from designer.model.cable import MaterialName, Trust
 from designer.model.duty import RUNNING_ROPE, DutyClass
 from designer.model.measurements import LogColumn, LogSession, Measurements, Reading
 from designer.model.motion import Ends
@@ -41,6 +43,7 @@ from designer.study import CableGroup, DocumentControl, Objective, RopeLimits, S
 from designer.units import describe
 
 _GRADES = "'all' or a list of grade ids"
+_MATERIALS = "'all' or a list of materials such as [steel, stainless]"
 Objectives = Annotated[
     tuple[Objective, ...],
     fields.list_of(1, 5, "a list of objectives such as [mass, drum_diameter]"),
@@ -79,6 +82,16 @@ TurnList = Annotated[
 GradeIds = Annotated[
     Annotated[Literal["all"], fields.only_word("all", _GRADES), Tag("a word")]
     | Annotated[tuple[fields.Text, ...], fields.list_of(1, 1000, _GRADES), Tag("a list")],
+    Discriminator(regions.word_or_list),
+]
+_SomeMaterials = Annotated[
+    tuple[MaterialName, ...],
+    fields.list_of(1, 20, _MATERIALS),
+    AfterValidator(fields.different),
+]
+Materials = Annotated[
+    Annotated[Literal["all"], fields.only_word("all", _MATERIALS), Tag("a word")]
+    | Annotated[_SomeMaterials, Tag("a list")],
     Discriminator(regions.word_or_list),
 ]
 
@@ -157,8 +170,9 @@ class WorkspaceSection(Section):
     sag: fields.Sag = config_field("Largest sag", SAG_MAX)
     """Largest distance of a cable from its chord, over the chord, at most 50 %. With cables to
     spare, a pose in which some cable would have to sag more is not held."""
-    proof: fields.ProofTime = config_field("Time for the proof", 20.0)
-    """How long to try to prove that the chosen rope holds in all poses; 0 for not at all."""
+    proof: fields.ProofTime | None = config_field("Longest time for the proof", None)
+    """How long at most to try to prove that the chosen rope holds in all poses; 0 for not at all.
+    Left out, a number of steps ends it, so that the answer is the same on every machine."""
     orientation: regions.FollowingSection | None = None
     """How the platform is turned at every position: fixed, toward a point, or as a table has
     it."""
@@ -190,7 +204,7 @@ class WorkspaceSection(Section):
             clearance_m=self.clearance,
             floor_m=self.floor,
             sag_max=self.sag,
-            proof_s=0.0 if self.path is not None else self.proof,
+            proof_s=0.0 if self.path is not None else inf if self.proof is None else self.proof,
             orientations=orientations,
         )
 
@@ -266,6 +280,11 @@ class SelectionSection(Section):
 
     grades: GradeIds = "all"
     """Grades to choose among: all, or a list of ids from `designer catalog list`."""
+    trust: Trust = config_field("Least trust", "B")
+    """Lowest trust of a grade that is tried unless `grades` or `prices` name it: A, a maker's or
+    standard's own table, B, a seller's transcript, C, third hand; a doubted size counts as C."""
+    materials: Materials = "all"
+    """Materials to choose among: all, or a list."""
     safety_factor: fields.SafetyFactor = 5.0
     """What is left of the minimum breaking load, over the allowable tension."""
     duty_class: DutyClass = config_field("Duty class", "none")
@@ -318,6 +337,8 @@ class SelectionSection(Section):
             limits=self.limits.limits(),
             rope_life=None if self.rope_life is None else self.rope_life.rope_life(),
             price_list=price_list,
+            trust=self.trust,
+            materials=() if self.materials == "all" else self.materials,
         )
 
 

@@ -16,6 +16,7 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.fabrication import FabricatedCable, fabricated_cables
 from designer.analysis.governing import GoverningPose
 from designer.analysis.reactions import Reaction
+from designer.grades.grade import NOT_NAMED
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.drum import DEAD_TURNS
 from designer.model.verdict import Verdict
@@ -302,7 +303,7 @@ def verification(analysis: Analysis) -> Context | None:
 
 def uncertainty(analysis: Analysis) -> Context | None:
     """Probabilities and shares; None where nobody asked and no modulus is borrowed."""
-    from designer.analysis.uncertainty.shares import SCRAMBLES
+    from designer.analysis.uncertainty import SCRAMBLES
 
     survey = analysis.uncertainty
     if survey is None:
@@ -321,19 +322,13 @@ def left_out(analysis: Analysis) -> Context | None:
     selection = analysis.study.selection
     if selection is None:
         return None
-    grades, allowed = analysis.catalogue.grades, selection.grades
-    by_name_only: dict[str, list[str]] = {}
-    for grade in grades:
-        if grade.why_only_by_name and grade.id not in (allowed or ()):
-            by_name_only.setdefault(grade.why_only_by_name, []).append(grade.id)
-    not_allowed = (
-        []
-        if allowed is None
-        else sorted(g.id for g in grades if g.id not in allowed and not g.why_only_by_name)
-    )
+    excluded: dict[str, list[str]] = {}
+    for grade in analysis.catalogue.grades:
+        if why := grade.why_excluded(selection):
+            excluded.setdefault(why, []).append(grade.id)
     return {
-        "not_allowed": not_allowed,
-        "by_name_only": by_name_only,
+        "not_allowed": excluded.pop(NOT_NAMED, []),
+        "excluded": excluded,
         "rejected": analysis.left_out,
     }
 

@@ -115,13 +115,15 @@ def outside_pose(analysis: Analysis) -> PoseOutside | None:
 
 def first_page(analysis: Analysis) -> Context:
     """Return what the templates of the first page get."""
-    findings = analysis.findings
+    findings, selection = analysis.findings, analysis.selection
     return {
         "answer": analysis.answer.value,
         "unmet": [Unmet(tuple(cases)) for cases in unmet_by_title(analysis.unmet)],
         "chosen": analysis.assignment.rope,
         "need": analysis.most_needed,
         "groups": analysis.groups,
+        "untrusted": selection and selection.untrusted,
+        "deciding": selection and MEANINGS[selection.objectives[0]],
         "tight": _TIGHT,
         **_card(analysis),
         **_advice(analysis, findings),

@@ -27,6 +27,7 @@ def selection(analysis: Analysis) -> Context | None:
         return None
     tried, meanings = result.candidates, [MEANINGS[o] for o in result.objectives]
     best, alternatives = _best(result, result.outcomes), _best(result, result.alternatives)
+    of_materials = result.best_of_materials(analysis.own_material)
     trusts = {outcome.grade.trust for outcome in result.outcomes}
     return {
         "selection": result,
@@ -52,6 +53,8 @@ def selection(analysis: Analysis) -> Context | None:
         ),
         "best": best,
         "best_form": _form(best),
+        "of_materials": of_materials,
+        "of_materials_form": _form(of_materials),
         "alternatives": alternatives,
         "alternatives_form": _form(alternatives),
         "thin": [outcome for outcome in rank(result.outcomes) if outcome.best is None],

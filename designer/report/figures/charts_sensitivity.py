@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from designer.analysis.uncertainty.shares import Share
+from designer.analysis.uncertainty import Share
 from designer.arrays import FloatArray
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style

@@ -109,11 +109,11 @@ def parallel(axes_of: Sequence[Axis], colour: Axis, front: BoolArray) -> str:
     import matplotlib as mpl
     from matplotlib.collections import LineCollection
 
-    ranges = [(np.nanmin(one.values), np.nanmax(one.values)) for one in axes_of]
+    ranges = [(np.nanmin(axis.values), np.nanmax(axis.values)) for axis in axes_of]
     shares = np.column_stack(
         [
-            (one.values - low) / (high - low) if high > low else np.full(len(one.values), 0.5)
-            for one, (low, high) in zip(axes_of, ranges, strict=True)
+            (axis.values - low) / (high - low) if high > low else np.full(len(axis.values), 0.5)
+            for axis, (low, high) in zip(axes_of, ranges, strict=True)
         ]
     )
     complete = np.flatnonzero(np.isfinite(shares).all(axis=1))
@@ -135,7 +135,7 @@ def parallel(axes_of: Sequence[Axis], colour: Axis, front: BoolArray) -> str:
         )
         axes.add_collection(lines)
         axes.set(xlim=(-0.15, len(axes_of) - 0.85), ylim=(-0.09, 1.06), yticks=[])
-        axes.set_xticks(range(len(axes_of)), [_wrapped(one.title) for one in axes_of])
+        axes.set_xticks(range(len(axes_of)), [_wrapped(axis.title) for axis in axes_of])
         axes.spines["left"].set_visible(False)
         for place, (axis, (low, high)) in enumerate(zip(axes_of, ranges, strict=True)):
             axes.axvline(place, color=palette.INK, linewidth=0.6)

@@ -98,7 +98,7 @@ def test_a_study_of_a_pose_alone_has_an_answer_as_well(yard: Driver) -> None:
     yard.press("evaluate all")
     yard.rest()
     assert cells(view)[0][:2] == ["holds", "Configured pose"]
-    assert yard.find(QLabel, "answer").text().startswith("Yes: 1")
+    assert yard.find(QLabel, "answer").text().startswith("Yes, for one pose at rest: 1")
     assert yard.find(QLabel, "answer").property("role") == "good"
     click(view, 0)
     yard.rest()

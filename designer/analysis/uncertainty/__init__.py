@@ -1,1 +1,0 @@
-"""How likely a size is enough where inputs are not certain, and which of them it hangs on."""

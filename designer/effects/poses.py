@@ -1,0 +1,217 @@
+"""Poses that are measured wrong: zero, scale, frame and distortion of a tracker, and its target.
+
+Each law takes poses as they were measured to those that the robot had. No cable feels such an
+error: it is one of setting up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from designer.arrays import FloatArray
+from designer.effects.effect import Effect, Parameter, Size, Values, frame_size_m
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured
+from designer.model.robot import Poses
+from designer.statics.geometry import cable_geometry
+from designer.units import ANGLE, LENGTH, NUMBER, PER_LENGTH
+
+_TURN = Size(2e-3, bounds=(-1.6, 1.6), plausible=(-0.5, 0.5))
+_AXES = "xyz"
+
+
+def moves_along(axis: int, machine: Machine) -> bool:
+    """Tell whether a robot moves along an axis, 0 to 2, which may be across its plane."""
+    return not machine.robot.is_planar or bool(abs(machine.robot.level[1, axis]) < 1.0 - 1e-9)
+
+
+def _is_in_space(machine: Machine) -> bool:
+    return not machine.robot.is_planar
+
+
+def _can_turn(machine: Machine) -> bool:
+    return not machine.robot.is_point_mass
+
+
+def _in_plane(machine: Machine, moves_m: FloatArray) -> FloatArray:
+    """Return moves (..., 3) [m], of a planar robot without what is across its plane."""
+    if _is_in_space(machine):
+        return moves_m
+    across = machine.robot.level[1]
+    return np.asarray(moves_m - (moves_m @ across)[..., None] * across)
+
+
+def _point(values: Values) -> FloatArray:
+    return np.array([values.get(f"{axis}_m", 0.0) for axis in _AXES])
+
+
+def _turn(values: Values) -> FloatArray:
+    vector = [values.get(f"r{axis}_rad", 0.0) for axis in _AXES]
+    return np.asarray(Rotation.from_rotvec(vector).as_matrix())
+
+
+def _shifted(poses: Poses, values: Values, *, machine: Machine) -> Poses:
+    return replace(poses, position_m=poses.position_m - _in_plane(machine, _point(values)))
+
+
+def _scaled(poses: Poses, values: Values, *, machine: Machine) -> Poses:
+    moves = poses.position_m / values["scale"] - poses.position_m
+    return replace(poses, position_m=poses.position_m + _in_plane(machine, moves))
+
+
+def _framed(poses: Poses, values: Values, *, machine: Machine) -> Poses:
+    """Take the frame's scale, turn and shift back, the turn and the scale about the exit points.
+
+    Their middle is a point that no log moves: what one log tells is right for another.
+    """
+    middle = machine.robot.exit_points_m.mean(axis=0)
+    turn = _turn(values)
+    position = middle + (poses.position_m - middle - _point(values)) @ turn / values["scale"]
+    if machine.robot.is_point_mass:
+        return replace(poses, position_m=position)
+    return Poses(position, turn.T @ poses.rotation)
+
+
+def _straightened(poses: Poses, values: Values, *, machine: Machine) -> Poses:
+    up, true_m = machine.robot.level[2], poses.position_m
+    for _ in range(3):  # each turn takes the error down by 2 · gain · distance
+        distance_m = np.linalg.norm(true_m - _point(values), axis=-1, keepdims=True)
+        true_m = poses.position_m - values["gain_per_m"] * distance_m**2 * up
+    return replace(poses, position_m=true_m)
+
+
+def _pointed(poses: Poses, values: Values) -> Poses:
+    rotation = poses.rotation @ _turn(values).T
+    return Poses(poses.position_m - rotation @ _point(values), rotation)
+
+
+def _bent_by(
+    measured: Measured, residual: FloatArray, *, machine: Machine
+) -> tuple[dict[str, float], ...]:
+    """Start from gain |p|² - 2 gain c·p + k that lifts the poses as the lengths ask for."""
+    geometry = cable_geometry(machine.robot, measured.poses)
+    slope = (geometry.drop_m / geometry.chord_m).ravel()  # what a length loses to a lift
+    points = np.repeat(measured.poses.position_m, machine.robot.n_cables, axis=0)
+    lift = np.column_stack([np.sum(points**2, axis=1), points, np.ones(len(points))])
+    off = np.hsplit(residual, 2)[0].ravel()
+    known = np.isfinite(off)
+    if known.sum() < 2 * lift.shape[1]:
+        return ()
+    gain, *along, _ = np.linalg.lstsq(slope[known, None] * lift[known], off[known])[0].tolist()
+    tracker = {
+        f"{axis}_m": -0.5 * x / (gain or 1e-12) for axis, x in zip(_AXES, along, strict=True)
+    }
+    return ({"gain_per_m": gain, **tracker},)
+
+
+def _shift(machine: Machine) -> Size:
+    """As far as half the frame's size is believed: a camera may stand anywhere."""
+    size = frame_size_m(machine)
+    return Size(1e-3 * size, bounds=(-size, size), plausible=(-0.5 * size, 0.5 * size))
+
+
+def _gain(machine: Machine) -> Size:
+    """Up to a fiftieth of the frame's size at that distance."""
+    per_m = 1.0 / frame_size_m(machine)
+    return Size(1e-3 * per_m, bounds=(-per_m, per_m), plausible=(-0.02 * per_m, 0.02 * per_m))
+
+
+def _tracker(machine: Machine) -> Size:
+    """Somewhere about the machine."""
+    far_m = float(np.abs(machine.robot.exit_points_m).max()) + 3.0 * frame_size_m(machine)
+    return Size(0.03 * far_m, bounds=(-far_m, far_m), plausible=(-far_m, far_m))
+
+
+def _marker(machine: Machine) -> Size:
+    """A marker may be as far off as the platform is large."""
+    extent = float(np.ptp(machine.robot.attachments_m, axis=0).max()) or 0.1 * frame_size_m(machine)
+    return Size(0.01 * extent, bounds=(-5 * extent, 5 * extent), plausible=(-extent, extent))
+
+
+_SHIFTS = tuple(
+    Parameter(
+        f"{name}_m",
+        LENGTH,
+        _shift,
+        is_optional=True,
+        can_have=partial(moves_along, axis),
+        part_of=("pose_frame",),
+    )
+    for axis, name in enumerate(_AXES)
+)
+_TURNS = tuple(Parameter(f"r{axis}_rad", ANGLE, _TURN, is_optional=True) for axis in _AXES)
+_SCALE = Parameter(
+    "scale",
+    NUMBER,
+    Size(1e-3, bounds=(0.5, 2.0), plausible=(0.9, 1.1)),
+    neutral=1.0,
+    above=0.0,
+    part_of=("pose_frame",),
+)
+
+SHIFT = Effect(
+    id="pose_shift",
+    summary="the zero of the measured poses is not the robot's",
+    law="measured position is the true one plus an offset",
+    source="definition",
+    parameters=_SHIFTS,
+    on_poses=_shifted,
+    cause="setting_up",
+    needs=frozenset({"pose"}),
+    takes_machine=True,
+)
+SCALE = replace(
+    SHIFT,
+    id="pose_scale",
+    summary="the scale of the measured poses is wrong",
+    law="measured position is scale times the true one, about the origin of the robot's frame",
+    parameters=(_SCALE,),
+    on_poses=_scaled,
+)
+FRAME = replace(
+    SHIFT,
+    id="pose_frame",
+    summary="the frame of the measured poses is not the robot's",
+    law="measured pose is the true one turned by (rx, ry, rz) and scaled about the middle of the "
+    "exit points, plus an offset",
+    source="definition; Umeyama, IEEE Trans. Pattern Anal. Mach. Intell. 13, 1991",
+    parameters=(*_SHIFTS, *_TURNS, replace(_SCALE, is_optional=True)),
+    on_poses=_framed,
+    can_have=_is_in_space,
+)
+DISTORTION = replace(
+    SHIFT,
+    id="pose_distortion",
+    summary="the measured poses are distorted: an error that grows with the square of the distance "
+    "from the tracker",
+    law="measured height is the true one plus gain · d², d the distance from the tracker at "
+    "(x, y, z), as where the line of sight is bent",
+    source="Rüeger, Electronic Distance Measurement, 1996 (refraction)",
+    parameters=(
+        Parameter("gain_per_m", PER_LENGTH, _gain),
+        *(replace(p, size=_tracker, part_of=(), is_shape=True) for p in _SHIFTS),
+    ),
+    on_poses=_straightened,
+    can_have=_is_in_space,
+    needs=frozenset({"pose", "length"}),
+    starts_from=_bent_by,
+)
+TOOL_POINT = replace(
+    SHIFT,
+    id="tool_point",
+    summary="the measured point is not the origin of the platform's frame",
+    law="measured is the point (x, y, z) of the platform's frame, with axes that are turned by "
+    "(rx, ry, rz) in it where orientation is measured",
+    source="definition; Tsai and Lenz, IEEE Trans. Robot. Autom. 5, 1989",
+    parameters=(
+        *(replace(p, size=_marker, part_of=()) for p in _SHIFTS),
+        *(replace(p, can_have=_can_turn) for p in _TURNS),
+    ),
+    on_poses=_pointed,
+    can_have=_is_in_space,
+    takes_machine=False,
+)
