@@ -85,8 +85,11 @@ def catalog_new(
     lender = None if like is None else _grade(like, no_plugins)
     maker_table = read_maker_table(table, columns, _choose if can_ask() else lambda *_: None, page)
     units = _units(maker_table, units)
-    rows = maker_table.rows(units)
+    left_out: list[str] = []
+    rows = maker_table.rows(units, left_out.append)
     _print_table(maker_table, units, len(rows))
+    for size in left_out:
+        typer.echo(f"  left out: {size}")
     texts = _usual(table, lender) | given
     draft = GradeDraft(maker_table, rows, units, texts, lender, doubt)
     if can_ask():
