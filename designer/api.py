@@ -96,13 +96,7 @@ def analyse(
 ) -> Analysis:
     """Return the analysis of a study, or of its file, with every stage computed.
 
-    Parameters are those of `designer.analysis.analyse.analyse`: all grades; an existing folder
-    for ``workspace.nc``; what shows progress.
-
-    Raises
-    ------
-    InputError
-        If the study is wrong, or asks for nothing that can be answered.
+    Parameters and errors are those of `designer.analysis.analyse.analyse`, and of `read_study`.
     """
     return analyse_study(_study(study), catalogue, folder, reporter)
 
@@ -116,16 +110,9 @@ def write_report(
 ) -> None:
     """Write the report and all results into a folder, as `designer report` does; all or nothing.
 
-    A study, or its file, is analysed first. An earlier report in the folder is replaced. Where
-    this machine cannot draw in space, the report says which pictures are left out. ``template``
-    is a folder of templates that come before ours; a ``quick`` report is page 1 in HTML alone.
-
-    Raises
-    ------
-    OutputError
-        If it cannot be written.
-    InputError
-        If the study or a template is faulty.
+    A study, or its file, is analysed first. The rest is as `designer.report.render.write_report`
+    does: an earlier report is replaced, ``template`` is a folder of templates that come before
+    ours, and a ``quick`` report is page 1 in HTML alone.
     """
     if not isinstance(analysis, Analysis):
         study = _study(analysis)

@@ -112,7 +112,7 @@ def _explained(kind: str, make: Callable[..., Any], names: Sequence[str]) -> Cal
         except InputError:
             raise
         except (ValueError, TypeError, AttributeError) as error:
-            words = re.findall(r"\w+", str(error))  # entry sentence names its field
+            words = re.findall(r"\w+", str(error))  # each sentence names its field
             field = next((word for word in words if word in names), "")
             raise WrongValueError(kind, field, str(error)) from error
 
@@ -166,11 +166,15 @@ class Shown:
     __slots__ = ()
 
     def summary(self) -> dict[str, str]:
-        """Return what is shown: a text for entry name."""
-        shown = {
-            entry.name: getattr(self, entry.name) for entry in fields(cast(Any, self)) if entry.repr
-        }
-        return {name: _in_short(value) for name, value in shown.items() if value is not None}
+        """Return what is shown: a text for each name."""
+        shown = {}
+        for entry in fields(cast(Any, self)):
+            value = getattr(self, entry.name)
+            is_plain = isinstance(value, bool | int | float | str | tuple)
+            is_default = value is entry.default or (is_plain and value in ((), entry.default))
+            if entry.repr and value is not None and not is_default:
+                shown[entry.name] = _in_short(value)
+        return shown
 
     def __repr__(self) -> str:
         """Return one line."""
@@ -185,11 +189,8 @@ class Shown:
 
 def _in_short(value: object) -> str:
     if isinstance(value, np.ndarray):
-        return (
-            np.array2string(value, precision=5)
-            if value.size <= 6 and value.ndim <= 1
-            else f"array {value.shape}"
-        )
+        is_short = value.size <= 6 and value.ndim <= 1
+        return np.array2string(value, precision=5) if is_short else f"array {value.shape}"
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, tuple | list | Mapping) and len(value) > 3:
