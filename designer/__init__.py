@@ -11,14 +11,19 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOMES = {
-    "designer.api": "analyse catalogue diagnose read_study size write_report",
+    "designer.api": "analyse catalogue compare diagnose export find_poses follow lengths read_study"
+    " size sweep write_report",
     "designer.analysis.analyse": "Analysis",
+    "designer.analysis.comparison": "Comparison",
+    "designer.analysis.lengths": "FoundPoses Lengths",
     "designer.analysis.pose": "PoseAnalysis",
     "designer.grades.grade": "Grade",
     "designer.grades.registry": "Catalogue",
     "designer.diagnosis.result": "Diagnosis",
     "designer.errors": "DesignerError EffectError InputError OutputError",
     "designer.model.cable": "Cable Material",
+    "designer.model.drum": "Drum",
+    "designer.model.load_case": "Ice LoadCase Wind",
     "designer.model.measurements": "Measurements",
     "designer.model.point_list": "PointList",
     "designer.model.prism": "Prism",
@@ -27,24 +32,42 @@ _HOMES = {
     "designer.model.space": "Orientations",
     "designer.model.uncertainty": "Normal Uncertainty Uniform",
     "designer.model.verdict": "Verdict",
+    "designer.model.winches": "Winches",
     "designer.model.workspace": "Workspace",
     "designer.optimum.optimise": "optimise",
     "designer.optimum.result": "Optimum",
     "designer.resources": "example_file example_names",
-    "designer.study": "CableGroup DeclaredEffect Selection Study",
+    "designer.study": "CableGroup DeclaredEffect RopeLimits Selection Study",
 }
 """Where the public names are defined, those of each module separated by spaces."""
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
+    from designer.analysis.comparison import Comparison
+    from designer.analysis.lengths import FoundPoses, Lengths
     from designer.analysis.pose import PoseAnalysis
-    from designer.api import analyse, catalogue, diagnose, read_study, size, write_report
+    from designer.api import (
+        analyse,
+        catalogue,
+        compare,
+        diagnose,
+        export,
+        find_poses,
+        follow,
+        lengths,
+        read_study,
+        size,
+        sweep,
+        write_report,
+    )
     from designer.diagnosis.result import Diagnosis
     from designer.errors import DesignerError, EffectError, InputError, OutputError
     from designer.grades.grade import Grade
     from designer.grades.registry import Catalogue
     from designer.model.cable import Cable, Material
+    from designer.model.drum import Drum
+    from designer.model.load_case import Ice, LoadCase, Wind
     from designer.model.measurements import Measurements
     from designer.model.point_list import PointList
     from designer.model.prism import Prism
@@ -53,23 +76,30 @@ if TYPE_CHECKING:
     from designer.model.space import Orientations
     from designer.model.uncertainty import Normal, Uncertainty, Uniform
     from designer.model.verdict import Verdict
+    from designer.model.winches import Winches
     from designer.model.workspace import Workspace
     from designer.optimum.optimise import optimise
     from designer.optimum.result import Optimum
     from designer.resources import example_file, example_names
-    from designer.study import CableGroup, DeclaredEffect, Selection, Study
+    from designer.study import CableGroup, DeclaredEffect, RopeLimits, Selection, Study
 
 __all__ = [
     "Analysis",
     "Cable",
     "CableGroup",
     "Catalogue",
+    "Comparison",
     "DeclaredEffect",
     "DesignerError",
     "Diagnosis",
+    "Drum",
     "EffectError",
+    "FoundPoses",
     "Grade",
+    "Ice",
     "InputError",
+    "Lengths",
+    "LoadCase",
     "Material",
     "Measurements",
     "Normal",
@@ -83,20 +113,29 @@ __all__ = [
     "Prism",
     "Rectangle",
     "Robot",
+    "RopeLimits",
     "Selection",
     "Study",
     "Uncertainty",
     "Uniform",
     "Verdict",
+    "Winches",
+    "Wind",
     "Workspace",
     "analyse",
     "catalogue",
+    "compare",
     "diagnose",
     "example_file",
     "example_names",
+    "export",
+    "find_poses",
+    "follow",
+    "lengths",
     "optimise",
     "read_study",
     "size",
+    "sweep",
     "write_report",
 ]
 

@@ -31,6 +31,7 @@ def _leave(number: int, _: object) -> None:
     try:
         if sys.stderr is not None and sys.stderr.isatty():
             os.write(2, b"\n")  # behind the terminal's ^C
+        os.write(2, b"Interrupted; nothing was written.\n")
     finally:
         os._exit(128 + number)
 

@@ -13,9 +13,12 @@ IntArray = NDArray[np.int64]
 VerdictArray = NDArray[np.int8]
 
 
-def frozen_array(values: ArrayLike) -> FloatArray:
-    """Return ``values`` as a float array that cannot be written to."""
-    array = np.array(values, dtype=np.float64)
+def frozen_array(values: ArrayLike, name: str = "an array") -> FloatArray:
+    """Return ``values`` as a float array that cannot be written to; ``name`` is for the message."""
+    try:
+        array = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be numbers, not {values!r:.60}") from None
     array.setflags(write=False)
     return array
 
@@ -38,7 +41,7 @@ def finite_array(name: str, values: ArrayLike, *shape: int | None) -> FloatArray
         With one sentence.
     """
     is_array = isinstance(values, np.ndarray) and values.dtype == np.float64
-    array = np.asarray(values) if is_array else frozen_array(values)
+    array = np.asarray(values) if is_array else frozen_array(values, name)
     require_shape(name, array, *shape)
     if not np.isfinite(array).all():
         raise ValueError(f"{name} must be finite, and some are not")

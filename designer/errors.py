@@ -4,6 +4,7 @@
 
     DesignerError
     ├── InputError          the user's files or arguments are wrong (exit status 2)
+    │   └── WrongValueError      a value made in Python is wrong; also a ValueError
     ├── OutputError         the results cannot be written where asked (exit status 2)
     ├── MissingLibraryError the machine lacks what draws in space (exit status 2)
     └── EffectError         an effect that a plugin brought in fails at work (exit status 2)
@@ -83,6 +84,15 @@ class InputError(DesignerError):
     ) -> InputError:
         """Return the error of one fault in a file, of all of it or in a line, or in an option."""
         return cls([Fault(str(file), line, "", problem, expected)])
+
+
+class WrongValueError(InputError, ValueError):
+    """A value made in Python is refused; its fault names the class as file, and the field."""
+
+    def __init__(self, kind: str, field: str, sentence: str, expected: str = "") -> None:
+        problem = sentence.removeprefix(field).lstrip(": ")
+        super().__init__([Fault(kind, None, field, problem, expected)])
+        self.args = (f"{sentence} (expected {expected})" if expected else sentence,)
 
 
 class OutputError(DesignerError):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
 from typing import Protocol, TypeVar
@@ -53,6 +53,30 @@ def checkpoint() -> None:
     between = _between.get()
     if between is not None:
         between()
+
+
+Item = TypeVar("Item")
+OpenTask = Callable[[str, int], AbstractContextManager[Advance]]
+_open_task: ContextVar[OpenTask] = ContextVar("open_task", default=SILENT.task)
+
+
+@contextmanager
+def steps_shown_by(open_task: OpenTask) -> Iterator[None]:
+    """Show the loops that this thread runs through `steps` meanwhile."""
+    token = _open_task.set(open_task)
+    try:
+        yield
+    finally:
+        _open_task.reset(token)
+
+
+def steps(name: str, items: Iterable[Item]) -> Iterator[Item]:
+    """Yield each item, deep inside of a task, and show how far that is; see `steps_shown_by`."""
+    items = [*items]
+    with _open_task.get()(name, len(items)) as advance:
+        for item in items:
+            yield item
+            advance(1)
 
 
 class Named(Protocol):

@@ -31,6 +31,7 @@ _FLAT = 1e-6
 Objective = Literal["mass", "cost", "drum_diameter", "max_tension", "stiffness"]
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True)
 class RopeLimits:
     """Limits that the chosen rope is checked against; None asks for nothing.
@@ -67,6 +68,7 @@ _SAFETY_FACTOR = 5.0
 """Where a study gives neither a factor nor a duty class."""
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True)
 class CableGroup:
     """Cables that get the same product: a name, and their numbers from 1."""
@@ -81,6 +83,7 @@ class CableGroup:
             checked.Number(least=1).require(f"a cable of group '{self.name}'", cable)
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True)
 class Selection:
     """How a product is chosen.
@@ -222,6 +225,7 @@ class DocumentControl:
     logo: Path | None = None  # A PNG, JPEG or SVG file
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True)
 class DeclaredEffect:
     """An effect that the model of this machine has."""
@@ -237,8 +241,9 @@ class DeclaredEffect:
             checked.FINITE.require(name, value)
 
 
-@dataclass(frozen=True, slots=True)
-class Study:
+@checked.reports_field
+@dataclass(frozen=True, slots=True, repr=False)
+class Study(checked.Shown):
     """A robot, its load, where it works, and how its cable is to be chosen.
 
     ``material`` is the family that is sized, its allowable stress that at the exit point.

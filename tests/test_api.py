@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import json
+import os
 import re
 import subprocess
 import sys
@@ -12,9 +13,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 
 import designer
 from designer.cli.commands import main
+from designer.report.figures.opengl import why_no_scenes
 from designer.report.render import REPORT_FILES
 from designer.resources import example_file
 
@@ -80,18 +83,136 @@ def test_the_readme_does_what_it_shows(tmp_path, monkeypatch, capsys) -> None:
     assert (tmp_path / "my-crane-report" / "report.pdf").stat().st_size > 0
 
 
+@pytest.fixture(scope="module")
+def analysis() -> designer.Analysis:
+    study = designer.read_study(example_file("hoist"), with_plugins=False).unproved
+    assert study.workspace is not None
+    study = replace(study, workspace=replace(study.workspace, samples=200))
+    return designer.analyse(study, designer.catalogue(with_plugins=False))
+
+
+def test_samples_are_labelled(analysis: designer.Analysis) -> None:
+    assert analysis.workspace is not None
+    samples, table = analysis.workspace.to_xarray(), analysis.workspace.to_dataframe()
+    assert [*samples["axis"].values] == ["x", "y", "z"]
+    assert [*samples["cable"].values] == [1, 2, 3]
+    assert len(table) == 200
+    assert (table["position_z"] == samples["position"].sel(axis="z").values).all()
+    assert (table["length_2"] == samples["length"].sel(cable=2).values).all()
+    assert set(table["verdict"]) == {"solved"}
+
+
+def test_values_are_shown_in_a_line_and_as_a_table(analysis: designer.Analysis) -> None:
+    for value in (
+        analysis, analysis.study, analysis.study.robot, analysis.workspace, analysis.selection,
+        analysis.chosen, analysis.pose, designer.catalogue(with_plugins=False),
+        designer.lengths(analysis, [[25.0, 14.0, 6.0]]), designer.compare(analysis, analysis),
+    ):  # fmt: skip
+        assert "\n" not in repr(value)
+        assert len(repr(value)) < 700, repr(value)
+        assert value is not None
+        assert value._repr_html_().startswith("<table>")
+    assert "answer: yes" in repr(analysis)
+    assert "not computed yet" in repr(designer.analysis.analyse.Analysis.begin(analysis.study))
+
+
+def test_plots_are_axes_and_scenes(analysis: designer.Analysis) -> None:
+    charts = set(dir(analysis.plot)) - {"region", "pose"}
+    shown = {name: getattr(analysis.plot, name)() for name in charts}
+    assert {name for name, axes in shown.items() if axes} >= {"of_ropes", "of_family", "edge"}
+    assert all(isinstance(axis, Axes) for axes in shown.values() for axis in axes)
+    assert any("utilisation" in axis.get_xlabel() for axis in analysis.plot.of_ropes())
+    with pytest.raises(AttributeError, match="no plot 'edges', but of_ropes"):
+        analysis.plot.edges  # noqa: B018
+    if not why_no_scenes():
+        for scene in (analysis.plot.region, analysis.plot.pose):
+            plotter = scene(off_screen=True)
+            assert len(plotter.actors) > 2
+            assert np.ptp(plotter.screenshot()) > 100
+            plotter.close()
+
+
+def test_commands_in_python(analysis: designer.Analysis, tmp_path: Path) -> None:
+    lengths = designer.lengths(analysis, [[25.0, 14.0, 6.0], [20.0, 10.0, 3.0]])
+    back = designer.find_poses(analysis, lengths.statics.length_m)
+    assert np.abs(back.place[:, :3] - [[25.0, 14.0, 6.0], [20.0, 10.0, 3.0]]).max() < 1e-6
+    lost = designer.export(analysis.study, "moordyn", tmp_path / "hoist.txt")
+    assert "LINES" in (tmp_path / "hoist.txt").read_text()
+    assert all(isinstance(line, str) for line in lost)
+    moved = designer.follow(
+        analysis.study, [[20, 10, 3], [28, 16, 6]], speed_max_m_per_s=1.0,
+        acceleration_max_m_per_s2=0.5,
+    )  # fmt: skip
+    motion = moved.robot.platform.motion
+    assert motion is not None
+    assert np.linalg.norm(motion.velocity[:, :3], axis=1).max() <= 1.0 + 1e-9
+    moved = replace(moved, load_cases=())
+    assert designer.analyse(moved).path is not None
+    assert designer.compare(analysis, analysis).is_same
+    file = example_file("hoist")
+    assert designer.size(file).sizing.diameter_m == designer.size(str(file)).sizing.diameter_m
+    designer.write_report(analysis.study, tmp_path / "page", quick=True)
+    assert [path.name for path in (tmp_path / "page").iterdir()] == ["report.html"]
+
+
 @pytest.mark.slow
-def test_the_notebook_runs(monkeypatch, capsys) -> None:
-    monkeypatch.setenv("MPLBACKEND", "agg")
-    file = example_file("yard").with_name("first-steps.ipynb")
-    cells = json.loads(file.read_text(encoding="utf-8"))["cells"]
-    space: dict[str, object] = {}
-    for cell in cells:
-        if cell["cell_type"] == "code":
-            exec("".join(cell["source"]), space)
-    diameters = re.findall(r"kg: (\d\.\d+) mm", capsys.readouterr().out)
-    assert len(diameters) == 5
-    assert diameters == sorted(diameters)
+def test_sweep_in_python(tmp_path: Path) -> None:
+    (tmp_path / "crane.yaml").write_text(example_file("yard").read_text(encoding="utf-8"))
+    (tmp_path / "plan.yaml").write_text(
+        "study: crane.yaml\nvary: {robot.platform.mass: [100 kg, 200 kg]}\n"
+        "keep: [pose.optimum.diameter_m]\n"
+    )
+    points = designer.sweep(tmp_path / "plan.yaml", workers=1)
+    assert points.sizes["point"] == 2
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["crane.yaml", "plan.yaml"]
+
+
+SCRIPT = """
+from dataclasses import replace
+from pathlib import Path
+
+import designer
+
+study = designer.read_study("crane.yaml")
+wind = designer.Wind(speed_m_per_s=12.0, cable_drag_coefficient=1.2)
+case = designer.LoadCase("wind", dynamic_factor=1.2, wind=wind)
+limits = designer.RopeLimits(stiffness_N_per_m=1e4)
+selection = designer.Selection(grades=("unirope-python-hoist-1960",), limits=limits)
+winches = designer.Winches(drum_diameter_m=0.3)
+robot = replace(study.robot, winches=winches)
+study = replace(study, robot=robot, load_cases=(case,), selection=selection)
+study = designer.follow(study, [[0, 0, 1], [1, 0, 2]], [0.0, 4.0])
+analysis = designer.analyse(study)
+if analysis.chosen is not None and analysis.workspace is not None:
+    print(analysis.chosen.name, analysis.workspace.to_xarray()["length"].sel(cable=1))
+    print(len(analysis.workspace.to_dataframe()), analysis.plot.edge()[0].figure)
+analysis.plot.region(off_screen=True).screenshot("region.png")
+print(designer.lengths(analysis, [[0, 0, 1]]).statics.length_m.max())
+print(designer.find_poses(study, [[3.0, 3.0, 3.0]]).is_stable.all())
+print(designer.compare("a.yaml", Path("b.yaml")).is_same)
+print(designer.sweep("plan.yaml", workers=2).sizes["point"])
+lost: tuple[str, ...] = designer.export("crane.yaml", "csv", "rows.csv")
+try:
+    designer.write_report("crane.yaml", "out", quick=True)
+except designer.InputError as error:
+    print([fault.field for fault in error.faults])
+"""
+
+
+def test_a_script_of_a_user_is_typed(tmp_path: Path) -> None:
+    (tmp_path / "script.py").write_text(SCRIPT)
+    (tmp_path / "mypy.ini").write_text(
+        "[mypy]\nstrict = true\n[mypy-designer.*]\nfollow_imports = silent\n"
+        "[mypy-pandas.*,matplotlib.*,pyvista.*]\nignore_missing_imports = true\n"
+    )
+    pytest.importorskip("mypy")
+    cache = Path(__file__).parents[1] / ".mypy_cache"
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "--cache-dir", str(cache), "script.py"],
+        cwd=tmp_path, env={**os.environ, "MYPYPATH": str(Path(designer.__file__).parents[1])},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_size_gives_what_the_command_prints(capsys, monkeypatch) -> None:

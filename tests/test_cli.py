@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -12,11 +14,14 @@ from pathlib import Path
 
 import pytest
 
-from designer.cli import terminal
+from designer.analysis.analyse import analyse
+from designer.cli import commands, terminal
 from designer.cli.commands import main
 from designer.cli.tables import print_grades
 from designer.grades.registry import load_catalogue
+from designer.io.config import read_study
 from designer.report.render import REPORT_FILES
+from designer.resources import example_file, example_names
 
 STUDY = """
 name: small crane
@@ -182,6 +187,22 @@ def test_report_with_nothing_to_solve(designer) -> None:
     assert "nothing to solve" in told.err
 
 
+def test_quick_report(designer) -> None:
+    Path("crane.yaml").write_text(STUDY + WORKSPACE)
+    quick = designer("report", "crane.yaml", "--quick")
+    assert (quick.status, quick.out.splitlines()[-1]) == (0, "crane-quick: report.html")
+    page = Path("crane-quick/report.html").read_text()
+    assert "Page 1 alone: no charts, no proof between the samples, no PDF" in page
+    assert page.count("<section") == 1
+    targets = set(re.findall(r'href="#([^"]*)"', page))
+    assert targets <= set(re.findall(r'id="([^"]*)"', page))
+    study = read_study(Path("crane.yaml"))
+    (chosen,) = {row for row in quick.out.splitlines() if row.startswith("│ cable ")}
+    whole = analyse(study).chosen
+    assert whole is not None
+    assert whole.size.id in chosen
+
+
 def test_report_into_a_file(designer) -> None:
     Path("study.yaml").write_text(STUDY)
     Path("out").write_text("mine")
@@ -260,6 +281,38 @@ def test_init_writes_a_study_that_reads(designer) -> None:
     unknown = designer("init", "other.yaml", "--example", "yart")
     assert unknown.status == 2
     assert "yard" in unknown.err
+
+
+@pytest.mark.parametrize(
+    ("answers", "name"), [("\n", "hoist"), ("ten\n0\n1\n", "cogiro"), ("yard\n", "yard")]
+)
+def test_init_asks_on_a_terminal(designer, monkeypatch, answers: str, name: str) -> None:
+    monkeypatch.setattr(commands, "can_ask", lambda: True)
+    monkeypatch.setattr("sys.stdin", io.StringIO(answers))
+    outcome = designer("init", "crane.yaml")
+    assert outcome.status == 0, outcome.err
+    assert all(example in outcome.out for example in example_names())
+    text = Path("crane.yaml").read_text()
+    assert text.endswith(example_file(name).read_text())
+
+
+def test_init_starts_with_a_hoist_in_a_pipe(designer) -> None:
+    assert designer("init").status == 0
+    study = read_study(Path("hoist.yaml"))
+    selection = study.selection
+    assert selection is not None
+    assert (selection.safety_factor, selection.termination_efficiency) == (5.0, 0.9)
+    assert selection.sheave_diameter_m is not None
+    assert all(case.wind is not None for case in study.load_cases)
+
+
+def test_end_of_input_writes_nothing(designer, monkeypatch) -> None:
+    monkeypatch.setattr(commands, "can_ask", lambda: True)
+    monkeypatch.setattr("sys.stdin", io.StringIO(""))
+    outcome = designer("init", "crane.yaml")
+    assert outcome.status == 130
+    assert outcome.err.endswith("Interrupted; nothing was written.\n")
+    assert not Path("crane.yaml").exists()
 
 
 def test_the_shell_completes_commands_and_names() -> None:

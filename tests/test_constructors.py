@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any
+from types import UnionType
+from typing import Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 import pytest
 
+import designer
 from designer.arrays import frozen_array
 from designer.kernel.batch import solve_batch
 from designer.kernel.calling import situation_of
@@ -32,6 +35,7 @@ STEEL = Material(7800.0, 200e9, 180e6)
 BOX = Prism.box((0.0, 1.0), (0.0, 1.0), (0.0, 1.0))
 ONE = Poses.at([4.0, 4.0, 3.0])
 SOME = Workspace(BOX, samples=8)
+STUDY = Study("s", ROBOT, STEEL, pose=ONE)
 HALVES = (CableGroup("front", (1, 2, 3)), CableGroup("back", (4, 5, 6, 7)))
 nan, inf = np.nan, np.inf
 
@@ -127,6 +131,96 @@ def test_what_cannot_be_is_refused_in_one_sentence(what) -> None:
     with pytest.raises(ValueError, match=why) as caught:
         make()
     assert "\n" not in str(caught.value)
+
+
+MADE = {
+    kind.__name__: kind
+    for kind in (getattr(designer, name) for name in designer.__all__)
+    if isinstance(kind, type) and getattr(kind.__init__, "__wrapped__", None)
+}
+RIGHT = {
+    "Robot": {"exit_points_m": EXITS, "platform": Platform(100.0, BODY)},
+    "Study": {"name": "s", "robot": ROBOT, "material": STEEL, "workspace": SOME},
+    "Workspace": {"region": BOX},
+    "Platform": {"mass_kg": 1.0},
+    "LoadCase": {"name": "case"},
+    "Prism": {"polygon_m": BOX.polygon_m, "z_m": (0.0, 1.0)},
+    "Rectangle": {"ends_m": np.eye(2), "z_m": (0.0, 1.0)},
+    "DeclaredEffect": {"id": "creep", "cable": None, "parameters": {}},
+    "CableGroup": {"name": "front", "cables": (1, 2)},
+    "Wind": {"speed_m_per_s": 3.0, "cable_drag_coefficient": 1.2},
+    "Cable": {
+        "diameter_m": 0.01, "linear_density_kg_per_m": 0.4, "axial_stiffness_N": 6e6,
+        "allowable_tension_N": 1e4,
+    },
+    "Poses": {"position_m": np.zeros(3), "rotation": np.eye(3)},
+    "Measurements": {
+        "file": Path("rows.csv"), "linear_density_kg_per_m": 1.0, "axial_stiffness_N": 1e6,
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_wrong_values_are_input_errors_that_name_the_field(name: str) -> None:
+    """Each field that is an array, a number or a value of its own, with what is none of them."""
+    kind = MADE[name]
+    texts = {str, bool, Path, dict, list, tuple}
+    tried = 0
+    for field in fields(kind):
+        hint = get_type_hints(kind)[field.name]
+        union = get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
+        parts = {get_origin(part) or part for part in union}
+        if parts & texts or field.name == "z_m":
+            continue
+        for wrong in ("rubbish", object()):
+            with pytest.raises(designer.InputError) as caught:
+                kind(**{**RIGHT.get(name, {}), field.name: wrong})
+            assert caught.value.faults[0].field == field.name, (field.name, wrong)
+            assert caught.value.faults[0].file == name
+        tried += 1
+    assert tried or name == "CableGroup"
+    with pytest.raises(designer.InputError, match="nonsense is no field"):
+        kind(**RIGHT.get(name, {}), nonsense=1)
+
+
+@pytest.mark.parametrize(
+    ("make", "field"),
+    [
+        (lambda: Selection(safety_factor=0.5), "safety_factor"),
+        (lambda: replace(STEEL, youngs_modulus_Pa=-1.0), "youngs_modulus_Pa"),
+        (lambda: Prism.over(BOX.polygon_m, nan, (0.0, 1.0)), "inset_m"),
+        (lambda: Poses.at("here"), "position_m"),
+        (lambda: Study("s", ROBOT, STEEL, load_cases=({"name": "wind"},)), "load_cases"),
+        (lambda: designer.lengths(STUDY, [[0.0, 1.0]]), "poses"),
+        (lambda: designer.find_poses(STUDY, [[1.0, 2.0]]), "length_m"),
+        (lambda: designer.follow(STUDY, [[0, 0, 0], [1, 0, 0]]), "time_s"),
+        (lambda: designer.follow(STUDY, [["a"]], [0.0]), "places"),
+        (lambda: designer.export(STUDY, "dxf", "a.dxf"), "to"),
+        (lambda: designer.export(STUDY, "csv", "a.txt"), "path"),
+    ],
+)
+def test_field_of_a_wrong_value(make: Callable[[], object], field: str) -> None:
+    with pytest.raises(designer.InputError) as caught:
+        make()
+    assert caught.value.faults[0].field == field
+
+
+@pytest.mark.parametrize(
+    ("kind", "called", "meant"),
+    [
+        (Platform, "mass", "mass_kg"),
+        (Robot, "anchors", "exit_points_m"),
+        (Robot, "tension_min", "tension_min_N"),
+        (Material, "density", "density_kg_per_m3"),
+        (Selection, "sheave_diameter", "sheave_diameter_m"),
+        (LoadCase, "acceleration", "acceleration_m_per_s2"),
+        (Workspace, "clearance", "clearance_m"),
+        (Workspace, "simples", "samples"),
+    ],
+)
+def test_names_of_a_study_lead_to_those_of_python(kind: type, called: str, meant: str) -> None:
+    with pytest.raises(designer.InputError, match=f"{called} is no field .expected {meant},"):
+        kind(**{called: 1.0})
 
 
 @pytest.mark.parametrize("what", ["exits", "kappa", "force", "rotation"])

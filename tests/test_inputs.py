@@ -94,6 +94,8 @@ REGION = "workspace: {region: {prism: anchors, z: [1 m, 4 m], inset: 2 m}, sampl
 WRITING = {
     "schema": "schema -o {}",
     "lengths": "lengths study.yaml --poses poses.csv -o {}.csv",
+    "pose": "pose study.yaml --lengths lengths.csv -o {}.csv",
+    "quick": "report study.yaml --quick -o {}",
     "export": "export study.yaml --to caspr -o {}_bodies.xml",
     "verify": "verify -o {}",
     "plan": "diagnose --plan region.yaml --unknown anchors --length-noise 1mm -o {}.csv",
@@ -118,7 +120,7 @@ def test_an_output_that_is_no_file_is_refused_before_the_work(
     for place in (
         "designer.analysis.analyse.Analysis.begin",
         "designer.reference.page.compute",
-        "designer.export.robot.ExportedRobot.of",
+        "designer.exports.robot.ExportedRobot.of",
         "designer.diagnosis.plan.plan",
     ):
         monkeypatch.setattr(place, work)
@@ -126,6 +128,7 @@ def test_an_output_that_is_no_file_is_refused_before_the_work(
     Path("study.yaml").write_text(STUDY)
     Path("region.yaml").write_text(STUDY + REGION)
     Path("poses.csv").write_text("x_m,y_m,z_m\n10,6,4\n")
+    Path("lengths.csv").write_text("length_1_m,length_2_m,length_3_m\n10,10,10\n")
     if name == "pipe":
         for ending in ("", ".csv", "_bodies.xml"):
             os.mkfifo(f"pipe{ending}")

@@ -11,9 +11,14 @@ import pytest
 from test_cli import STUDY, WORKSPACE, designer
 
 import designer as door
-from designer.analysis.lengths import lengths_of
+from designer.analysis.analyse import Analysis
+from designer.analysis.lengths import FoundPoses, lengths_of, poses_of
 from designer.errors import InputError
 from designer.io.poses import read_poses
+from designer.model.cable import Material
+from designer.model.robot import Poses
+from designer.selection.qualities import DesignCable
+from designer.statics.fixed_length import cables_of_length
 
 __all__ = ["designer"]
 
@@ -204,3 +209,86 @@ def test_without_poses_and_path(tmp_path, designer) -> None:
     found = designer("lengths", str(study(tmp_path)))
     assert found.status == 2
     assert "--poses: is missing, and the study has no workspace.path" in found.err
+
+
+FRAME = """
+robot:
+  anchors: [[0, 0, 8], [0, 0, 8], [10, 0, 8], [10, 0, 8], [5, 9, 8], [5, 9, 8]]
+  platform:
+    mass: 200 kg
+    attachments: [[-1, 0.6, 0], [-0.6, -1, 0], [0.6, -1, 0], [1, 0.6, 0], [0.4, 1, 0], [-0.4, 1, 0]]
+cable: {grade: unirope-6x36-iwrc-1960, safety_factor: 5}
+pose: [5, 3, 2]
+"""
+
+
+def test_lengths_lead_back_to_the_pose(tmp_path, designer) -> None:
+    config = str(study(tmp_path, FRAME))
+    table = poses(tmp_path, "x_m,y_m,z_m,point\n5,3,2,1\n5.1,3.1,1.8,2\n")
+    designer("lengths", config, "--poses", str(table), "-o", "winches.csv")
+    outcome = designer("pose", config, "--lengths", "winches.csv")
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "crane-poses.csv").read_text())))
+    for point, place in (("1.0", [5, 3, 2, 0, 0, 0]), ("2.0", [5.1, 3.1, 1.8, 0, 0, 0])):
+        same = [row for row in rows if row["point"] == point]
+        assert [row["solution"] for row in same] == [str(k + 1) for k in range(len(same))]
+        names = "x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"
+        offsets = [
+            np.abs([float(row[name]) for name in names] - np.array(place)).max() for row in same
+        ]
+        assert min(offsets) < 1e-6
+        assert same[int(np.argmin(offsets))]["is_stable"] == "true"
+    states = [row["is_stable"] for row in rows]
+    assert "false" in states  # between two places to rest there is one where it does not stay
+    assert outcome.status == 1
+    assert "have several stable poses" in outcome.out
+
+
+def test_found_poses_are_equilibria(tmp_path) -> None:
+    """Catenaries of the given lengths, built anew at each pose, hold the platform."""
+    given = door.read_study(study(tmp_path, FRAME))
+    analysis = Analysis.begin(given)
+    there = lengths_of(analysis, Poses.at([[5.0, 3.0, 2.0]]))
+    assert there is not None
+    found = poses_of(analysis, there.statics.length_m)
+    assert found is not None
+    cable, ones = found.cable.cable, np.ones((len(found.row), 1))
+    length_m = np.repeat(there.statics.length_m, len(found.row), axis=0)
+    statics = cables_of_length(
+        given.robot, Poses.at(found.place), length_m,
+        cable.axial_stiffness_N * ones, cable.weight_N_per_m * ones,
+    )  # fmt: skip
+    left = np.abs(statics.equilibrium_residual_N()).max(axis=1)
+    assert (left < 1e-5 * statics.largest_tension_N).all()
+    gaps = found.place[:, None] - found.place[None]
+    assert (np.abs(gaps).max(axis=-1) > 1e-4).sum() == len(gaps) * (len(gaps) - 1)
+
+
+def test_rows_without_a_pose_stand_in_the_table() -> None:
+    nothing = np.empty(0)
+    found = FoundPoses(
+        DesignCable(Material(7800.0, 200e9, 180e6).cable(0.01), "10 mm"), 1,
+        nothing.astype(int), np.empty((0, 6)), np.empty((0, 3)), nothing > 0, nothing > 0,
+    )  # fmt: skip
+    head, row = found.to_csv(("length_1_m",), np.array([[3.0]])).splitlines()
+    assert row == "3.0" + "," * 10 + ",0"
+    assert head.endswith(",tension_3_N,is_stable,solution")
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("length_1_m,length_2_m\n3,4\n", "length_3_m: there is no such column"),
+        ("length_1_m,length_2_m,length_3_m\n3,4,\n", "w.csv:2: length_3_m: row 1 holds nothing"),
+        ("length_1_m,length_2_m,length_3_m\n3,-4,5\n", "w.csv:2: length_2_m: row 1 holds -4"),
+        ("length_1_m,length_2_m,length_3_m,length_4_m\n3,4,5,6\n", "length_4_m: is of no cable"),
+        ("length_1_m,length_2_m,length_3_m\n", "there is no row"),
+        (None, "--lengths: w.csv: "),
+    ],
+)
+def test_wrong_lengths_are_refused(tmp_path, designer, text: str | None, fault: str) -> None:
+    if text is not None:
+        (tmp_path / "w.csv").write_text(text)
+    outcome = designer("pose", str(study(tmp_path)), "--lengths", "w.csv")
+    assert outcome.status == 2
+    assert fault in outcome.err
+    assert not (tmp_path / "crane-poses.csv").exists()

@@ -104,14 +104,35 @@ def test_a_request_to_end_leaves_nothing_behind(
         [sys.executable, "-c", code],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
     ) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == b"at work\n"
         process.send_signal(request_to_end)
-        status = process.wait(timeout=900)
-    assert status != 0
+        errors = process.communicate(timeout=900)[1]
+    assert process.returncode != 0
+    assert errors == b"Interrupted; nothing was written.\n"
     assert list(tmp_path.iterdir()) == []
+
+
+@posix
+def test_an_interruption_reports_what_was_written(tmp_path: Path) -> None:
+    code = (
+        "import os, signal, sys\nfrom pathlib import Path\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "from designer.io.output import output_folder, write_new_file\n"
+        "from designer.io.process import settle_in\nsettle_in()\n"
+        "with output_folder(Path('report')) as building:\n"
+        "    (building / 'report.html').write_text('')\n"
+        "write_new_file(Path('crane.yaml'), '')\nos.kill(os.getpid(), signal.SIGINT)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (
+        130,
+        b"Interrupted; written: report, crane.yaml.\n",
+    )
 
 
 LOADING = """
@@ -236,7 +257,8 @@ def test_ctrl_c_while_libraries_are_loaded(library: str) -> None:
         "from designer.__main__ import main; sys.argv = ['designer', '--version']; main()\n"
     )
     done = subprocess.run([sys.executable, "-c", asks], capture_output=True, check=False)
-    assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"")
+    assert (done.returncode, done.stdout) == (130, b"")
+    assert done.stderr == b"Interrupted; nothing was written.\n"
 
 
 LIMITED = """

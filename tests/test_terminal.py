@@ -5,10 +5,12 @@ from __future__ import annotations
 import io
 import time
 
+import numpy as np
 import pytest
 
 from designer.cli import commands, terminal
 from designer.errors import Fault, InputError, OutputError, described
+from designer.progress import checkpoint
 
 
 def test_the_time_left_is_reckoned_from_the_first_step_on(
@@ -58,7 +60,28 @@ def test_work_that_says_nothing_is_told_to_go_on(
             time.sleep(0.5)
     told = capsys.readouterr().err.splitlines()
     assert len(told) > 3
-    assert told[-1].endswith("verification" if shown == "bars" else "what is left")
+    assert told[-1].endswith("verification, 0%" if shown == "bars" else "what is left")
+
+
+def test_share_grows_within_a_step(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A step of a minute: its batches of poses move the share, which stays below the step's end."""
+    now_s = 0.0
+    monkeypatch.setattr(terminal.time, "monotonic", lambda: now_s)
+    with terminal.ProgressBars() as bars, bars.task("stages", 2), bars.task("search", 4) as advance:
+        for _ in range(2):
+            for _ in range(60):
+                now_s += 1.0
+                checkpoint()
+            advance(1)
+    reported = capsys.readouterr().err.splitlines()
+    times = [int(line.split(" s: ")[0]) for line in reported]
+    assert np.diff([0, *times]).max() <= 5
+    shares = [float(line.split("search, ")[1].split("%")[0]) for line in reported]
+    assert all(np.diff(shares[:-1]) > 0.0)
+    assert all(share <= 25 for share, time_s in zip(shares, times, strict=True) if time_s < 60)
+    checkpoint()  # nothing is shown any more
 
 
 HOSTILE = "\x1b]0;a\x07\x1b[31m\x9b5m\u202e\r\udc80b"

@@ -9,12 +9,14 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from designer import checked
 from designer.analysis.carries import Carries, carries_of
 from designer.analysis.findings import Findings, find
 from designer.analysis.governing import (
@@ -59,6 +61,9 @@ from designer.workspace.result import WorkspaceMap
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import map_workspace
 
+if TYPE_CHECKING:
+    from designer.report.plot import Plots
+
 
 class TemporaryFolder:
     """A temporary folder that goes when nothing refers to this any more, or after a killed run."""
@@ -88,8 +93,8 @@ _FEW_POSES = 64
 """Of a workspace, that tell whether a motion is free in all of them."""
 
 
-@dataclass(frozen=True, eq=False)
-class Analysis:
+@dataclass(frozen=True, eq=False, repr=False)
+class Analysis(checked.Shown):
     """All that is computed of a study, each stage when it is first read.
 
     Whoever reads the answer alone has nothing computed that does not change it; `analyse` returns
@@ -355,6 +360,25 @@ class Analysis:
             return reactions_of(loads, advance)
 
     @property
+    def plot(self) -> Plots:
+        """The figures of the report, as Matplotlib axes and PyVista scenes."""
+        # What draws stands above this room, and is loaded when it is first asked for.
+        plots: Plots = import_module("designer.report.plot").Plots(self)
+        return plots
+
+    def summary(self) -> dict[str, str]:
+        """Return the answer, as far as it is computed already."""
+        if "requirements" not in vars(self):
+            return {"study": self.study.name, "answer": "not computed yet"}
+        count = len(self.requirements)
+        answer = f"{self.answer.value}, {count - len(self.unmet)} of {count} requirements hold"
+        shown = {"study": self.study.name, "answer": answer}
+        if self.chosen is not None:
+            shown["rope"] = self.chosen.name
+            shown["utilisation"] = f"{self.chosen.verification.utilisation:.1%}"
+        return shown
+
+    @property
     def sweep_file(self) -> Path | None:
         """NetCDF file with every sample, if the study has a workspace."""
         return None if self.workspace is None else self.workspace.file
@@ -468,8 +492,10 @@ def analyse(
 
 def finished(analysis: Analysis) -> Analysis:
     """Return an analysis of which every stage is computed: that of a report."""
-    for stage in _STAGES:
-        getattr(analysis, stage)
+    with analysis.reporter.task("stages", len(_STAGES)) as advance:
+        for stage in _STAGES:
+            getattr(analysis, stage)
+            advance(1)
     if analysis.pose is not None:
         _ = analysis.pose.rest
     if analysis.ropes is not None:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+from designer import checked
 from designer.documents.plain import Json
 
 _TOLD = 1e-9
@@ -82,8 +83,8 @@ class ComparisonLine:
         return not _same(self.a, self.b)
 
 
-@dataclass(frozen=True, slots=True)
-class Comparison:
+@dataclass(frozen=True, slots=True, repr=False)
+class Comparison(checked.Shown):
     """Two results.
 
     Parameters

@@ -7,21 +7,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from designer import checked
 from designer.analysis.analyse import Analysis
-from designer.arrays import BoolArray, FloatArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.documents.plain import csv_text
-from designer.measured.assign import length_names, tension_names
+from designer.measured.assign import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
+from designer.progress import Advance
 from designer.selection.qualities import DesignCable
 from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.rest import find_equilibria, spread_poses
 
+_STARTS, _ROWS_AT_ONCE = 48, 16
 _FULL = 1.0 + 1e-9
 """Utilisation where a cable was made for a pose, with what rounding adds."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Lengths:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Lengths(checked.Shown):
     """What the winches have to pay out.
 
     Parameters
@@ -68,6 +72,88 @@ class Lengths:
             solved = ["" if np.isnan(x) else f"{x:.10g}" for x in row]
             rows.append([*exactly, *solved, Verdict(int(verdict)).label])
         return csv_text(rows)
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class FoundPoses(checked.Shown):
+    """Every equilibrium that was found on given lengths, stable ones of a row first.
+
+    Parameters
+    ----------
+    cable : DesignCable
+        With which cables.
+    n_rows : int
+        For how many rows of lengths.
+    row : array (n_found,) of int
+        Which of them each is of, from 0.
+    place : array (n_found, 6)
+        Position and rotation vector [m, rad].
+    exit_tension_N : array (n_found, n_cables)
+        Tension at the exit points [N].
+    is_stable : array (n_found,) of bool
+        Whether the platform stays there.
+    is_allowed : array (n_found,) of bool
+        Whether no cable is beyond its allowable tension.
+    """
+
+    cable: DesignCable
+    n_rows: int
+    row: IntArray
+    place: FloatArray
+    exit_tension_N: FloatArray
+    is_stable: BoolArray
+    is_allowed: BoolArray
+
+    def to_csv(self, names: Sequence[str], values: FloatArray) -> str:
+        """Return a table with the given columns (n_rows, n_names) first, a line each equilibrium.
+
+        Then pose, tensions, whether it is stable, and its number in the row; empty cells, and
+        solution 0, in a row without any.
+        """
+        tensions = tension_names(self.exit_tension_N.shape[1])
+        columns = (*POSITION, *ROTATION_VECTOR, *tensions, "is_stable", "solution")
+        lines = [[*names, *columns]]
+        for row, numbers in enumerate(values):
+            exactly = ["" if np.isnan(x) else repr(float(x)) for x in numbers]
+            of_row = np.flatnonzero(self.row == row)
+            for number, k in enumerate(of_row, start=1):
+                figures = (f"{x:.10g}" for x in (*self.place[k], *self.exit_tension_N[k]))
+                stable = "true" if self.is_stable[k] else "false"
+                lines.append([*exactly, *figures, stable, str(number)])
+            if not len(of_row):
+                lines.append([*exactly, *[""] * (len(columns) - 1), "0"])
+        return csv_text(lines)
+
+
+def poses_of(
+    analysis: Analysis, length_m: FloatArray, advance: Advance = lambda _: None
+) -> FoundPoses | None:
+    """Return all poses found on unstrained lengths (n_rows, n_cables) [m], at rest.
+
+    The cables are those of `design_cable_of`; None if there are none. Searched from many starts,
+    so that more may exist. ``advance`` is called with the number of rows solved.
+    """
+    cable = design_cable_of(analysis)
+    if cable is None:
+        return None
+    robot = analysis.built.robot.at_rest
+    starts = spread_poses(robot, _STARTS)
+    pieces = []
+    for first in range(0, len(length_m), _ROWS_AT_ONCE):
+        rows = length_m[first : first + _ROWS_AT_ONCE]
+        equilibria = find_equilibria(robot, cable.cable, rows, starts, with_unstable=True)
+        statics, is_stable = equilibria.found.statics, equilibria.found.is_stable
+        used = (statics.cable_tension_N / cable.cable.allowable_tension_N).max(axis=-1)
+        for row, which in enumerate(equilibria.which):
+            numbers, start = np.unique(which, return_index=True)
+            start = start[numbers >= 0]
+            start = start[np.argsort(~is_stable[row, start], kind="stable")]
+            place = Poses(statics.poses.position_m[row], statics.poses.rotations[row])
+            piece = (np.full(len(start), first + row), place.part(start).place)
+            figures = statics.exit_tension_N[row, start], is_stable[row, start]
+            pieces.append((*piece, *figures, used[row, start] <= _FULL))
+        advance(len(rows))
+    return FoundPoses(cable, len(length_m), *map(np.concatenate, zip(*pieces, strict=True)))
 
 
 def design_cable_of(analysis: Analysis) -> DesignCable | None:

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from designer import checked
 from designer.errors import InputError
 from designer.model.cable import Material
 from designer.sizing.loop import LoopSizing, size_by_loop
@@ -17,8 +18,8 @@ from designer.study import Study, as_built_by, require_enough_cables
 from designer.workspace.section import section_of_pose
 
 
-@dataclass(frozen=True, eq=False)
-class PoseAnalysis:
+@dataclass(frozen=True, eq=False, repr=False)
+class PoseAnalysis(checked.Shown):
     """The configured pose alone.
 
     Parameters

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import re
 import shlex
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from designer.cli.options import NoPlugins, argument, output_option
+from designer.cli.options import NoPlugins, argument, can_ask, output_option
 from designer.errors import Fault, InputError
-from designer.io.process import is_terminal
 
 if TYPE_CHECKING:
     from designer.grades.grade import Grade
@@ -85,26 +83,24 @@ def catalog_new(
     columns, units = _pairs("--column", column, FIGURES), _pairs("--unit", unit, FIGURES[1:])
     given = _pairs("--set", field, TEXTS)
     lender = None if like is None else _grade(like, no_plugins)
-    maker_table = read_maker_table(table, columns, _choose if _asks() else lambda *_: None, page)
+    maker_table = read_maker_table(table, columns, _choose if can_ask() else lambda *_: None, page)
     units = _units(maker_table, units)
-    rows = maker_table.rows(units)
+    left_out: list[str] = []
+    rows = maker_table.rows(units, left_out.append)
     _print_table(maker_table, units, len(rows))
+    for size in left_out:
+        typer.echo(f"  left out: {size}")
     texts = _usual(table, lender) | given
     draft = GradeDraft(maker_table, rows, units, texts, lender, doubt)
-    if _asks():
+    if can_ask():
         draft = _asked(draft, no_plugins)
     draft = _with_doubt(draft)
     if not draft.missing:
         draft.grade()
     path = output or table.with_suffix(".yaml").name
     write_new_file(Path(path), draft.text())
-    _print_end(Path(path), draft, "trust" in given or _asks())
+    _print_end(Path(path), draft, "trust" in given or can_ask())
     return not draft.missing
-
-
-def _asks() -> bool:
-    """Tell whether somebody can be asked."""
-    return is_terminal(sys.stdin) and is_terminal(sys.stdout)
 
 
 def _pairs(
@@ -163,7 +159,7 @@ def _units(table: MakerTable, named: Mapping[str, str]) -> dict[str, str]:
         if figure == SIZE:
             continue
         text = named.get(figure) or column.unit
-        while _asks() and (text is None or known_unit(figure, text) is None):
+        while can_ask() and (text is None or known_unit(figure, text) is None):
             text = typer.prompt(f"Unit of '{column.head}' ({DIMENSIONS[figure].expected_unit})")
         unit = None if text is None else known_unit(figure, text)
         if unit is not None:
@@ -231,7 +227,7 @@ def _with_doubt(draft: GradeDraft) -> GradeDraft:
     if not off:
         return draft
     _print_off(draft, off)
-    if not draft.doubt and _asks():
+    if not draft.doubt and can_ask():
         why = typer.prompt("Why they may be so, to keep them (empty to stop)", default="")
         draft = replace(draft, doubt=why)
     if not draft.doubt:

@@ -20,9 +20,10 @@ from designer.cli.catalog import catalog
 from designer.cli.compare import compare
 from designer.cli.export import export
 from designer.cli.import_robot import import_robot
-from designer.cli.lengths import lengths
+from designer.cli.lengths import lengths, pose
 from designer.cli.optimise import optimise
 from designer.cli.options import (
+    INTERRUPTED,
     NEGATIVE_ANSWER,
     WRONG_INPUT,
     Config,
@@ -30,6 +31,7 @@ from designer.cli.options import (
     NoPlugins,
     Template,
     argument,
+    can_ask,
     catalogue_of,
     option,
     output_option,
@@ -47,7 +49,7 @@ from designer.errors import (
     described,
     visible,
 )
-from designer.io.process import readable_output, settle_in
+from designer.io.process import interruption, readable_output, settle_in
 from designer.resources import example_names
 
 if TYPE_CHECKING:
@@ -69,6 +71,9 @@ class Commands(HelpedCommands):
                 answer = super().invoke(ctx)
             except EOFError as error:  # typer would call it aborted, with the status of an answer
                 raise RuntimeError(described(error)) from error
+            except typer.Abort:  # the end of input where something was asked
+                typer.echo(f"\n{interruption()}", err=True)
+                raise typer.Exit(INTERRUPTED) from None
             if answer is False:
                 raise typer.Exit(NEGATIVE_ANSWER)
             return answer
@@ -84,6 +89,7 @@ app = typer.Typer(
 )
 app.add_typer(catalog, name="catalog")
 app.command()(lengths)
+app.command()(pose)
 app.command()(compare)
 app.command()(sweep)
 app.command()(optimise)
@@ -139,15 +145,22 @@ def _options(
 def report(
     config: Config,
     output: Annotated[Path | None, output_option("CONFIG-report")] = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Page 1 and the answer alone, into CONFIG-quick.")
+    ] = False,
     template: Template = None,
     no_plugins: NoPlugins = False,
 ) -> bool:
     """Size, sweep the workspace, choose a rope, and write the report.
 
     Writes report.html, report.pdf, result.json, candidates.csv, reactions.csv, workspace.nc
-    and, along a path, path.csv.
+    and, along a path, path.csv. With --quick it tries no proof and writes page 1 alone, without
+    charts, as report.html: for trying out changes in seconds.
 
-    Example:  designer report fast.yaml -o fast-report
+    \b
+    Examples:
+      designer report fast.yaml -o fast-report
+      designer report fast.yaml --quick
 
     Exit status 0: the answer is yes, every requirement holds. 1: it is no, or open, and the report
     says why. 2: the input is wrong, and nothing is written.
@@ -160,19 +173,23 @@ def report(
 
     study, plugins = study_of(config, no_plugins)
     require_answerable(study)
-    folder = output or Path(f"{config.stem}-report")
-    begin_probe()
+    folder = output or Path(f"{config.stem}-{'quick' if quick else 'report'}")
+    if not quick:
+        begin_probe()
     catalogue = catalogue_of(study, plugins)
-    announce_compiling(proves=True)
+    announce_compiling(proves=not quick)
 
-    from designer.analysis.analyse import analyse
+    from designer.analysis.analyse import Analysis, analyse
     from designer.report.render import REPORT_FILES, write_report_files
 
     with output_folder(folder, REPORT_FILES) as building, ProgressBars() as bars:
-        analysis = analyse(study, catalogue, building, bars)
-        write_report_files(analysis, building, template, bars)
+        if quick:
+            analysis = Analysis.begin(study.unproved, catalogue, reporter=bars)
+        else:
+            analysis = analyse(study, catalogue, building, bars)
+        write_report_files(analysis, building, template, bars, quick=quick)
         written = file_names(building)
-    print_left_out(filter(None, [why_no_scenes()]))
+    print_left_out(filter(None, ["" if quick else why_no_scenes()]))
     print_summary(analysis, folder, written)
     return analysis.is_positive
 
@@ -366,32 +383,45 @@ def init(
         Path | None, argument("PATH", "File to write, EXAMPLE.yaml if left out.")
     ] = None,
     example: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--example",
             metavar="NAME",
-            help="Which study to copy; see --list.",
+            help="Which study to copy; see --list. Left out, a terminal is asked; else the hoist.",
             autocompletion=example_names,
         ),
-    ] = "fast",
+    ] = None,
     lists: Annotated[
         bool, typer.Option("--list", help="Tell what studies there are, and stop.")
     ] = False,
 ) -> None:
     """Write a commented study to start from, and beside it the schema by which editors check it.
 
-    Example:  designer init --example yard my-crane.yaml
+    Of the shipped examples, the one that is nearest to your robot; `fast` explains all fields.
+
+    \b
+    Examples:
+      designer init my-crane.yaml
+      designer init --example fast all-fields.yaml
     """
     from designer.resources import example_file, example_summary
 
+    names = example_names()
+    width = max(map(len, names))
+    summaries = [f"{name:{width}}  {example_summary(name)}" for name in names]
     if lists:
-        width = max(len(name) for name in example_names())
-        for name in example_names():
-            typer.echo(f"{name:{width}}  {example_summary(name)}")
+        typer.echo("\n".join(summaries))
         return
-    if example not in example_names():
-        names = ", ".join(example_names())
-        raise InputError.at("--example", f"there is no example {example!r}", names)
+    if example is None and can_ask():
+        for number, summary in enumerate(summaries, start=1):
+            typer.echo(f"{number:3}  {summary}")
+        while example not in names:
+            answer = typer.prompt("Which is nearest to yours? Number or name", default="hoist")
+            is_number = answer.isdecimal() and 0 < int(answer) <= len(names)
+            example = names[int(answer) - 1] if is_number else answer.strip()
+    example = example or "hoist"
+    if example not in names:
+        raise InputError.at("--example", f"there is no example {example!r}", ", ".join(names))
     target = path or Path(f"{example}.yaml")
     write_with_schema(target, example_file(example).read_text(encoding="utf-8"))
     typer.echo(f"{target} written. Next:  designer report {shlex.quote(str(target))}")

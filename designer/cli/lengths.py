@@ -1,4 +1,4 @@
-"""`designer lengths`: what each winch has to pay out at given poses, and which are not held."""
+"""`designer lengths` and `designer pose`: from poses to what each winch pays out, and back."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 from designer.cli.options import Config, NoPlugins, catalogue_of, option, output_option, study_of
 
 if TYPE_CHECKING:
-    from designer.analysis.lengths import Lengths
+    from designer.analysis.lengths import FoundPoses, Lengths
     from designer.arrays import BoolArray
 
 _MOST_ROWS = 12
@@ -78,6 +78,78 @@ def lengths(
     return bool(answer.holds.all())
 
 
+def pose(
+    config: Config,
+    lengths: Annotated[
+        Path,
+        option("--lengths", metavar="CSV", text="Unstrained lengths: columns length_1_m, …"),
+    ],
+    output: Annotated[Path | None, output_option("CONFIG-poses.csv", "FILE")] = None,
+    no_plugins: NoPlugins = False,
+) -> bool:
+    """Give all poses found on unstrained lengths of yours, stable or not, with the chosen rope.
+
+    For commissioning: where is the platform, and could it rest elsewhere on the same lengths?
+    Writes the columns of the file with position, rotation vector, tensions at the exit points,
+    is_stable, and solution, the number of the pose in its row; 0 where none was found. The
+    platform is at rest under the loads of `robot`. Other poses may exist than are found.
+
+    Example:  designer pose crane.yaml --lengths winches.csv -o poses.csv
+
+    Exit status 0: each row has one stable pose, within what the rope allows. 1: some have none, or
+    several, or no rope was found. 2: the input is wrong.
+    """
+    from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
+    from designer.io.output import require_file, write_file
+    from designer.io.poses import read_lengths
+
+    study, plugins = study_of(config, no_plugins)
+    table = read_lengths(lengths, study.robot.n_cables)
+    path = output or Path(f"{config.stem}-poses.csv")
+    require_file(path)
+    catalogue = catalogue_of(study, plugins)
+    announce_compiling()
+
+    from designer.analysis.analyse import Analysis
+    from designer.analysis.lengths import poses_of
+
+    with ProgressBars() as bars:
+        analysis = Analysis.begin(study.unproved, catalogue, reporter=bars)
+        _ = analysis.qualities
+        with bars.task("poses", len(table.length_m)) as advance:
+            answer = poses_of(analysis, table.length_m, advance)
+    if answer is None:
+        show("No rope serves this study, so there are no poses: see designer report.")
+        return False
+    write_file(path, answer.to_csv(table.names, table.values))
+    print_left_out(f"{lengths}: column {name} holds texts: left out" for name in table.left_out)
+    return _print_poses(answer, path)
+
+
+def _print_poses(poses: FoundPoses, path: Path) -> bool:
+    """Print how many poses were found, and the rows that are not plain; whether there are none."""
+    import numpy as np
+
+    from designer.cli.tables import bad
+    from designer.cli.terminal import show
+
+    n_stable = np.bincount(poses.row[poses.is_stable], minlength=poses.n_rows)
+    n_found = np.bincount(poses.row, minlength=poses.n_rows)
+    over = np.bincount(poses.row[poses.is_stable & ~poses.is_allowed], minlength=poses.n_rows) > 0
+    total, stable = len(poses.row), int(n_stable.sum())
+    show(f"{total} poses found for {poses.n_rows} rows with {poses.cable.name}, {stable} stable.")
+    remarks = [
+        *_rows(n_found == 0, "have no pose that was found", "rows"),
+        *_rows((n_found > 0) & (n_stable == 0), "have no stable pose", "rows"),
+        *_rows(n_stable > 1, "have several stable poses", "rows"),
+        *_rows(over, "have a stable pose beyond the allowable tension", "rows"),
+    ]
+    for line in remarks:
+        show(bad(line), soft_wrap=True)
+    show(f"{path} written", markup=False)
+    return not remarks
+
+
 def _print_lengths(lengths: Lengths, path: Path) -> None:
     """Print a table of the cables, and the rows that are not held or lie outside the region."""
     import numpy as np
@@ -117,8 +189,8 @@ def _remarks(lengths: Lengths) -> Iterator[str]:
     yield from _rows(lengths.outside, "outside the region that the study asks for")
 
 
-def _rows(which: BoolArray, fault: str) -> Iterator[str]:
+def _rows(which: BoolArray, fault: str, what: str = "poses") -> Iterator[str]:
     rows = [row for row, is_affected in enumerate(which, start=1) if is_affected]
     if rows:
         named = ", ".join(map(str, rows[:_MOST_ROWS])) + " …" * (len(rows) > _MOST_ROWS)
-        yield f"{len(rows)} of {len(which)} poses {fault}: row {named}"
+        yield f"{len(rows)} of {len(which)} {what} {fault}: row {named}"

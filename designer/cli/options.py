@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from copy import copy
 from pathlib import Path
@@ -12,6 +13,7 @@ from rich.markup import escape
 from typer.core import TyperGroup
 
 from designer.errors import InputError
+from designer.io.process import is_terminal
 from designer.units import Dimension, QuantityError, read_quantity
 
 if TYPE_CHECKING:
@@ -39,6 +41,11 @@ class HelpedCommands(TyperGroup):
             )
             command.help = "\n\n".join(joined)
         return command
+
+
+def can_ask() -> bool:
+    """Tell whether somebody sits at a terminal and can be asked."""
+    return is_terminal(sys.stdin) and is_terminal(sys.stdout)
 
 
 def path_of(text: str) -> Path:

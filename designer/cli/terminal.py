@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import threading
 import time
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from functools import partial
 
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.markup import escape
@@ -15,6 +17,7 @@ from rich.progress import (
     MofNCompleteColumn,
     Progress,
     SpinnerColumn,
+    TaskID,
     TextColumn,
     TimeElapsedColumn,
     TimeRemainingColumn,
@@ -26,7 +29,7 @@ from rich.text import Text
 
 from designer.errors import visible
 from designer.io.process import end_at_closed_pipe, is_terminal
-from designer.progress import Advance
+from designer.progress import Advance, interrupted_by, steps_shown_by
 
 
 class _Console(Console):
@@ -50,6 +53,9 @@ _out = _Console(highlight=False, emoji=False, width=None if is_terminal(sys.stdo
 _notes = _Console(stderr=True, highlight=False, emoji=False)
 _TOLD_EVERY_S = 5.0
 """Time between lines of progress where output goes to a file."""
+_SHOWN_EVERY_S = 0.5
+_BATCHES_A_STEP = 30
+"""As many batches of poses a first step is taken to have."""
 _MOST_SEEN = 1000
 """Steps whose time is kept."""
 
@@ -92,6 +98,8 @@ class ProgressBars(Progress):
     def __init__(self, text: str = "") -> None:
         self._line = Spinner("dots", Text(text))
         self._teller = None if _notes.is_terminal else _Teller(text)
+        self._stages: list[_Stage] = []
+        self._watch = ExitStack()
         super().__init__(
             SpinnerColumn(),
             TextColumn("{task.description:<10}", markup=False),
@@ -106,11 +114,14 @@ class ProgressBars(Progress):
     def start(self) -> None:
         """Begin to show."""
         super().start()
+        self._watch.enter_context(interrupted_by(self._count_batch))
+        self._watch.enter_context(steps_shown_by(partial(self.task, stays=False)))
         if self._teller is not None:
             self._teller.begin()
 
     def stop(self) -> None:
         """Leave the bars where they are, and nothing else."""
+        self._watch.close()
         self._line.text = Text("")
         super().stop()
         if self._teller is not None:
@@ -130,27 +141,72 @@ class ProgressBars(Progress):
             self._teller(text)
 
     @contextmanager
-    def task(self, name: str, total: int) -> Iterator[Advance]:
-        """Open a task of ``total`` steps; yields the function that advances it."""
-        bar = self.add_task(name, total=total)
-        n_done, pace = 0, _Pace()
+    def task(self, name: str, total: int, *, stays: bool = True) -> Iterator[Advance]:
+        """Open a task of ``total`` steps; yields the function that advances it.
 
-        def advance(steps: int) -> None:
-            nonlocal n_done
-            n_done += steps
-            self.advance(bar, steps)
-            share = min(n_done / max(total, 1), 1.0)
-            left_s = pace.left_s(share)
-            if self._teller is not None:
-                remaining = "" if left_s is None else f", {left_s:.0f} s left"
-                self._teller(f"{name}, {share:.0%}{remaining}")
+        Its bar ``stays`` where it is when it ends.
+        """
+        stage = _Stage(self, self.add_task(name, total=total), name, total)
+        self._stages.append(stage)
+        try:
+            yield stage.advance
+        finally:
+            self._stages.remove(stage)
+        if stays:
+            self.update(stage.bar, completed=total, total=total)
+        else:
+            self.remove_task(stage.bar)
+        self.report(self._stages[-1].words if self._stages else "")
 
+    def report(self, words: str) -> None:
+        """Write how far a task is, where nobody reads on a screen."""
         if self._teller is not None:
-            self._teller(name)
-        yield advance
-        self.update(bar, completed=total, total=total)
-        if self._teller is not None:
-            self._teller("")
+            self._teller(words)
+
+    def _count_batch(self) -> None:
+        if self._stages:
+            self._stages[-1].batch()
+
+
+class _Stage:
+    """How far a task is, also within a step, by the batches of poses that are solved in it.
+
+    How many a step takes is not known before. After n of them, with the mean m of the steps before
+    and x = log(1 + n / m), x / (1 + x) of it counts: never all, and never for long the same.
+    """
+
+    def __init__(self, bars: ProgressBars, bar: TaskID, name: str, total: int) -> None:
+        self.bar, self.words = bar, f"{name}, 0%"
+        self._bars, self._name, self._total, self._pace = bars, name, max(total, 1), _Pace()
+        self._n_done = self._n_batches = self._n_batches_before = 0
+        self._shown_s = self._ends_s = -math.inf
+        bars.report(self.words)
+
+    def advance(self, steps: int) -> None:
+        self._n_done += steps
+        self._n_batches_before += self._n_batches
+        self._n_batches = 0
+        share = min(self._n_done / self._total, 1.0)
+        left_s = self._pace.left_s(share)
+        self._ends_s = -math.inf if left_s is None else time.monotonic() + left_s
+        self._show(self._n_done, f"{share:.0%}")
+
+    def batch(self) -> None:
+        self._n_batches += 1
+        if time.monotonic() - self._shown_s < _SHOWN_EVERY_S or self._n_done >= self._total:
+            return
+        mean = self._n_batches_before / self._n_done if self._n_done else _BATCHES_A_STEP
+        x = math.log1p(self._n_batches / max(mean, 1.0))
+        n_done = self._n_done + x / (1.0 + x)
+        self._show(n_done, f"{n_done / self._total:.1%}")
+
+    def _show(self, n_done: float, share: str) -> None:
+        self._shown_s = time.monotonic()
+        left_s = self._ends_s - self._shown_s
+        remaining = f", {left_s:.0f} s left" if left_s >= 0.0 else ""
+        self.words = f"{self._name}, {share}{remaining}"
+        self._bars.update(self.bar, completed=n_done)
+        self._bars.report(self.words)
 
 
 class _Pace:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from designer import __version__
+from designer import __version__, checked
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.calibration import Calibration
 from designer.diagnosis.errors_of import Error, Foretold, Outlier, SessionError, Stage
@@ -204,8 +204,8 @@ class Use:
         return self.utilisation <= 1.0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Diagnosis:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Diagnosis(checked.Shown):
     """Everything that the diagnosis report shows.
 
     Parameters

@@ -67,7 +67,7 @@ def study_text(robot: ForeignRobot, answers: ImportAnswers) -> str:
         f"# {_in_one_line(robot.name)}",
         f"# Imported from a {_in_one_line(robot.source)}.",
         f"# Where it says '{FILL_IN}', the file does not tell; the study is refused until all is",
-        "# filled in. The fields are explained in the example that `designer init` writes.",
+        "# filled in. `designer init --example fast` explains the fields.",
         "",
         f"name: {_quoted(robot.name)}",
         "",

@@ -11,6 +11,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from designer import checked
 from designer.documents.document import path_text
 from designer.errors import Fault, InputError, described, one_line
 from designer.grades.checks import find_flaws
@@ -42,8 +43,8 @@ class CatalogueSource:
     sha256: str = field(default="", compare=False)
 
 
-@dataclass(frozen=True, slots=True)
-class Catalogue:
+@dataclass(frozen=True, slots=True, repr=False)
+class Catalogue(checked.Shown):
     """All grades that are known."""
 
     grades: tuple[Grade, ...]  #: ids are unique; ``origin`` is the name of a grade's source

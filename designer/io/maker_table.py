@@ -101,8 +101,12 @@ class MakerTable:
         """Return what is wrong with a cell."""
         return Fault(self.name, line, column, problem, expected)
 
-    def rows(self, units: Mapping[str, str]) -> tuple[MakerRow, ...]:
+    def rows(
+        self, units: Mapping[str, str], leave_out: Callable[[str], object] = lambda _: None
+    ) -> tuple[MakerRow, ...]:
         """Return the sizes, ascending in diameter; lines without any figure are passed over.
+
+        ``leave_out`` is called with words for each size that lacks a figure that is needed.
 
         Raises
         ------
@@ -118,15 +122,14 @@ class MakerTable:
                 continue  # a heading between the rows, or a note below them
             figures = {f: _number(texts[f]) for f in texts if f != SIZE and texts[f]}
             for figure in [f for f in self.columns if f != SIZE]:
-                if figure in NEEDED and not texts[figure]:
-                    problem = "holds nothing"
-                elif texts[figure] and figures[figure] is None:
-                    problem = f"holds {describe(texts[figure])}"
-                else:
-                    continue
-                head = self.columns[figure].head
-                expected = f"a number, the {figure}; or the row left out"
-                faults.append(self.fault(line, head, problem, expected))
+                if texts[figure] and figures[figure] is None:
+                    head, problem = self.columns[figure].head, f"holds {describe(texts[figure])}"
+                    expected = f"a number, the {figure}; or the row left out"
+                    faults.append(self.fault(line, head, problem, expected))
+            lacking = [figure for figure in NEEDED if not texts[figure]]
+            if lacking:
+                leave_out(f"line {line}, {' '.join(filter(None, cells[:2]))}: no {lacking[0]}")
+                continue
             first = _BRACKETS.sub("", texts["diameter"][:_LONGEST_NUMBER])
             size_id = texts.get(SIZE) or f"{first} {units['diameter']}"
             numbers = {figure: text for figure, text in figures.items() if text is not None}
@@ -202,7 +205,7 @@ def read_maker_table(
     for figure, column in columns.items():
         texts = [_cell(cells, column) for _, cells in below]
         if figure in NEEDED and texts and not any(texts):
-            expected = f"the {figure} of each size"
+            expected = f"the {figure} of each size, from the maker: nothing stands in for it"
             faults.append(Fault(str(path), head_line, column.head, "the column is empty", expected))
         columns[figure] = _with_unit(figure, column, printed_units[column.place], texts)
     if faults:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from designer.documents.opened import other_kind
 from designer.errors import OutputError
-from designer.io.process import NO_ROOM, Undo, undone_at_end
+from designer.io.process import NO_ROOM, Undo, undone_at_end, written
 
 if TYPE_CHECKING:
     from filelock import BaseFileLock
@@ -53,6 +53,7 @@ def output_folder(folder: Path, outdated: Collection[str] = ()) -> Iterator[Path
             yield building
         with explained(folder), undone_at_end() as back:
             aside = _move(building, folder, outdated, back)
+            written[folder] = None
             back.forget()
             # In one step: from here on a run that is killed has nothing to give back.
             aside.replace(aside.with_name("outdated"))
@@ -213,6 +214,7 @@ def write_file(path: Path, text: str) -> None:
     """
     with explained(path):
         write_whole(path, text.encode())
+        written[path] = None
 
 
 def write_new_file(path: Path, text: str) -> None:
@@ -234,6 +236,7 @@ def write_new_file(path: Path, text: str) -> None:
                 if os.path.lexists(path):
                     raise FileExistsError(errno.EEXIST, "exists already") from None
                 unfinished.replace(path)
+            written[path] = None
     except OutputError as error:
         if isinstance(error.__cause__, FileExistsError):
             line = f"{path}: exists already (expected a new file)"

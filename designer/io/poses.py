@@ -13,7 +13,13 @@ from designer.arrays import FloatArray
 from designer.documents.bounds import BOUNDS
 from designer.documents.opened import open_input, reason
 from designer.errors import Fault, InputError
-from designer.measured.assign import POSITION, ROTATION_VECTOR, unit_faults
+from designer.measured.assign import (
+    POSITION,
+    ROTATION_VECTOR,
+    cable_of,
+    length_names,
+    unit_faults,
+)
 from designer.measured.formats import read_table
 from designer.measured.table import LogTable, RawColumn
 from designer.model.robot import Poses, Robot
@@ -23,6 +29,7 @@ from designer.study import Study
 _OFF_PLANE = 1e-6
 """What counts as out of a planar robot's plane, over the extent of its exit points, or [rad]."""
 _OURS = (*POSITION, *ROTATION_VECTOR)
+_SHORTEST_M = 1e-3
 _LOAD_CASE = "load_case"
 TIME = "time_s"
 _LATEST_S = 1e7
@@ -82,38 +89,93 @@ def read_poses(path: Path, robot: Robot, error_of: ErrorOf = _OF_OPTION) -> Pose
         If it cannot be read, lacks a column or a value, has no row, or asks for what the robot
         cannot do: a point mass that turns, a planar robot out of its plane.
     """
-    try:
-        file = open_input(path)
-    except (OSError, ValueError) as error:
-        expected = "a CSV file with columns x_m, y_m, z_m"
-        raise error_of(f"{path}: {reason(error)}", expected) from None
-    with file:
-        table = read_table(file, str(path), MOST_POSES)
-    columns = {column.name: column for column in table.columns}
-    faults = [*table.faults, *_column_faults(table, columns)]
-    for name in _OURS:
-        faults += unit_faults(table, columns[name]) if name in columns else ()
-    if not faults:
-        faults = [*_cell_faults(table, [columns[name] for name in _OURS if name in columns])]
-    if not faults and table.n_rows > MOST_POSES:
-        faults.append(table.fault(None, "", f"{table.n_rows} poses", f"at most {MOST_POSES}"))
-    if faults:
-        raise InputError(faults)
+    table, columns = _read(path, _OURS, _column_faults, error_of)
     turns = ROTATION_VECTOR if ROTATION_VECTOR[0] in columns else ()
     place = np.stack([columns[name].values for name in (*POSITION, *turns)], axis=1)
     faults = list(_robot_faults(table, robot, place))
     if faults:
         raise InputError(table.first_few(faults, len(faults), "of this kind"))
-    columns_kept = [column for column in table.columns if column.name and not column.n_texts]
     return PoseTable(
-        tuple(column.name for column in columns_kept),
-        np.stack([column.values for column in columns_kept], axis=1),
+        *_numbers(table),
         place,
         _load_cases(columns[_LOAD_CASE], table.n_rows) if _LOAD_CASE in columns else (),
         tuple(c.name for c in table.columns if c.n_texts and c.name != _LOAD_CASE),
         table.sha256,
         table,
     )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LengthTable:
+    """Lengths of a file: its columns of numbers as in `PoseTable`, and ours of them."""
+
+    names: tuple[str, ...]
+    values: FloatArray
+    length_m: FloatArray  # (n_rows, n_cables), unstrained
+    left_out: tuple[str, ...]
+
+
+def read_lengths(path: Path, n_cables: int) -> LengthTable:
+    """Return the unstrained lengths in a CSV file, ``length_1_m`` and so on.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, lacks a column or a value, or has no row.
+    """
+    names = length_names(n_cables)
+
+    def faults_of(table: LogTable, columns: dict[str, RawColumn]) -> Iterator[Fault]:
+        for name in names:
+            if name not in columns:
+                yield table.fault(
+                    None, name, "there is no such column", f"{names[0]} to {names[-1]}"
+                )
+        extra = [name for name in columns if name.startswith("length_") and cable_of(name)]
+        for name in extra:
+            if name not in names:
+                yield table.fault(None, name, "is of no cable", f"{n_cables} cables")
+        if not table.n_rows:
+            yield table.fault(None, "", "there is no row", "lengths in each row")
+
+    table, columns = _read(path, names, faults_of, partial(InputError.at, "--lengths"))
+    lengths = np.stack([columns[name].values for name in names], axis=1)
+    left_out = tuple(column.name for column in table.columns if column.n_texts)
+    return LengthTable(*_numbers(table), lengths, left_out)
+
+
+def _read(
+    path: Path,
+    names: tuple[str, ...],
+    faults_of: Callable[[LogTable, dict[str, RawColumn]], Iterator[Fault]],
+    error_of: ErrorOf,
+) -> tuple[LogTable, dict[str, RawColumn]]:
+    """Return a table and its columns by name, those called ``names`` with a number in each cell."""
+    try:
+        file = open_input(path)
+    except (OSError, ValueError) as error:
+        expected = f"a CSV file with columns {', '.join(names[:3])}"
+        raise error_of(f"{path}: {reason(error)}", expected) from None
+    with file:
+        table = read_table(file, str(path), MOST_POSES)
+    columns = {column.name: column for column in table.columns}
+    faults = [*table.faults, *faults_of(table, columns)]
+    for name in names:
+        faults += unit_faults(table, columns[name]) if name in columns else ()
+    if not faults:
+        faults = [*_cell_faults(table, [columns[name] for name in names if name in columns])]
+    if not faults and table.n_rows > MOST_POSES:
+        faults.append(table.fault(None, "", f"{table.n_rows} rows", f"at most {MOST_POSES}"))
+    if faults:
+        raise InputError(faults)
+    return table, columns
+
+
+def _numbers(table: LogTable) -> tuple[tuple[str, ...], FloatArray]:
+    """Return the names of the columns that hold numbers alone, and what stands there."""
+    columns = [column for column in table.columns if column.name and not column.n_texts]
+    values = np.stack([column.values for column in columns], axis=1)
+    return tuple(column.name for column in columns), values
 
 
 def along_path(study: Study) -> PoseTable:
@@ -205,12 +267,14 @@ def _cell_faults(table: LogTable, columns: list[RawColumn]) -> list[Fault]:
     faults = []
     for column in columns:
         texts = {cell.row: cell.text for cell in column.texts}
-        limit = largest_m if column.name in POSITION else 2.0 * np.pi
+        limit = 2.0 * np.pi if column.name in ROTATION_VECTOR else largest_m
+        least = _SHORTEST_M if cable_of(column.name) else -limit
         unit = column.name.rpartition("_")[2]
-        for row in np.flatnonzero(~(np.abs(column.values) <= limit)).tolist():
+        is_within = (column.values >= least) & (column.values <= limit)
+        for row in np.flatnonzero(~is_within).tolist():
             value = repr(texts[row]) if row in texts else f"{column.values[row]:g}"
             value = "nothing" if value == "nan" else value
-            expected = f"a number between -{limit:.6g} and {limit:.6g} {unit}"
+            expected = f"a number between {least:.6g} and {limit:.6g} {unit}"
             faults.append(table.fault(row, column.name, f"holds {value}", expected))
     return table.first_few(faults, len(faults), "of this kind")
 

@@ -11,10 +11,11 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from types import FrameType
 from typing import NoReturn, TextIO
 
-from designer.errors import OutputError
+from designer.errors import OutputError, one_line
 
 NO_ROOM = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", None))  # Windows has no quota
 """What the system says where a file cannot grow: the disk is full, or a limit is reached."""
@@ -22,6 +23,10 @@ SPAWN = multiprocessing.get_context("spawn")
 """Makes the processes that work for this one: none shares its threads, which a fork would."""
 CLOSED_PIPE = 128 + 13
 """Exit status of a program whose reader went away, as the shell gives it after a SIGPIPE."""
+
+
+written: dict[Path, None] = {}
+"""Files and folders that this run has put in place, in order; an interruption reports them."""
 
 
 def settle_in() -> None:
@@ -34,6 +39,12 @@ def settle_in() -> None:
         with suppress(ValueError):  # only the main thread of a program may do this
             if signal.getsignal(number) is not signal.SIG_IGN:  # as in a background job
                 signal.signal(number, _end)
+
+
+def interruption() -> str:
+    """Return the line that tells of an interruption what was written before it."""
+    names = ", ".join(str(path) for path in written if path.exists())
+    return one_line(f"Interrupted; {f'written: {names}' if names else 'nothing was written'}.")
 
 
 def is_terminal(stream: TextIO | None) -> bool:
@@ -188,7 +199,8 @@ def _end(number: int, _: FrameType | None) -> NoReturn:
         signal.signal(signal_number, signal.SIG_IGN)
     for undo in reversed(_undo_at_end):
         undo.run()
-    if is_terminal(sys.stderr):
-        with suppress(OSError):
-            os.write(2, b"\x1b[?25h\n")  # show the cursor, which a progress bar hides
+    with suppress(OSError):
+        # A progress bar hides the cursor, and the terminal has written ^C.
+        show_cursor = b"\x1b[?25h\n" if is_terminal(sys.stderr) else b""
+        os.write(2, show_cursor + f"{interruption()}\n".encode(errors="replace"))
     os._exit(128 + number)

@@ -80,6 +80,7 @@ AttachedEach = tuple[Attached, ...]
 """What is clipped along each of the cables: one entry if all are alike, none for nothing."""
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True)
 class Cable:
     """One cable that can be bought or computed.
@@ -233,6 +234,7 @@ class MaterialsByPose:
             object.__setattr__(self, name, figures[self.of_pose])
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True)
 class Material(checked.Value):
     """A family of cables that differ in section only.

@@ -43,6 +43,7 @@ MOST_DIRECTIONS = 512
 """Of a load case with a set of wrenches: each is solved in all samples, for all ropes."""
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True, eq=False)
 class Wind(checked.Value):
     """Wind that blows with one speed everywhere.
@@ -85,6 +86,7 @@ class Wind(checked.Value):
         return np.column_stack([np.cos(turn), np.sin(turn), 0.0 * turn]) @ robot.level
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True)
 class Ice(checked.Value):
     """Ice all around the cables."""
@@ -202,6 +204,7 @@ def _row(vector: FloatArray) -> str:
     return f"({', '.join(f'{round(float(x), 3) + 0.0:g}' for x in vector)})"
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True, eq=False)
 class LoadCase:
     """One load case: what it changes of a study. None leaves that as the study has it.

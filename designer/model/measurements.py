@@ -63,6 +63,7 @@ class LogSession:
         return ", ".join(path.name for path in (self.file, *self.more_files))
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True)
 class Measurements(checked.Value):
     """Data measured on the built machine, and what is known about it.

@@ -17,6 +17,7 @@ _MOST_VERTICES = 256
 """Of a long list only the first points are tried as corners: all of it is tried anyway."""
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True, eq=False)
 class PointList(region.Region):
     """A finite set of positions, each of which is visited.

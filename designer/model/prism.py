@@ -30,6 +30,7 @@ _BEYOND = 1e-12
 """Relative: by so much a region is made larger before boxes are cut at its border."""
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True, eq=False)
 class Prism(region.Region):
     """An upright prism over a convex polygon.

@@ -20,6 +20,7 @@ _OFF_LINE = 1e-9
 _UNIT_SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True, eq=False)
 class Rectangle(region.Region):
     """An upright rectangle.

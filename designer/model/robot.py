@@ -21,6 +21,7 @@ SAG_MAX, SAG_AT_MOST = 0.2, 0.5
 _AS_BUILT = frozen_array(np.eye(3))
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True, eq=False)
 class Platform(checked.Value):
     """What the cables carry.
@@ -76,8 +77,9 @@ class Platform(checked.Value):
     moving_mass_kg: checked.NotNegative | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Robot:
+@checked.reports_field
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Robot(checked.Shown):
     """A cable-driven parallel robot.
 
     Parameters
@@ -356,6 +358,7 @@ def _vertical_frame(x: float, y: float, z: float) -> FloatArray:
     return frozen_array(turn.as_matrix())
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True, eq=False)
 class Poses:
     """A batch of platform poses, over any leading axes.
@@ -374,7 +377,9 @@ class Poses:
 
     def __post_init__(self) -> None:
         for name in ("position_m", "rotation"):
-            object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=np.float64))
+            value = getattr(self, name)
+            is_array = isinstance(value, np.ndarray) and value.dtype == np.float64
+            object.__setattr__(self, name, value if is_array else frozen_array(value, name))
         position, rotation = self.position_m, self.rotation
         if position.ndim < 1 or position.shape[-1] != 3:
             raise ValueError(f"position_m must have the shape (…, 3), not {position.shape}")
@@ -395,7 +400,7 @@ class Poses:
 
         Both may stand in one array (..., 6).
         """
-        position = frozen_array(position_m)
+        position = frozen_array(position_m, "position_m")
         if position.shape[-1] == 6:
             return cls.at(position[..., :3], position[..., 3:])
         if rotation_vector_rad is None:

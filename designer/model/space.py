@@ -26,6 +26,7 @@ FILLING = 16
 """Orientations inside a range that are tried beside its middle and its corners."""
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True, eq=False)
 class Orientations:
     """How the platform shall be turned; a position is served when it is in every one of them.

@@ -19,6 +19,7 @@ LEAST_DEVIATION = -0.9
 """Lower end of a uniform relative deviation: a quantity keeps a tenth at least."""
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True)
 class Normal(checked.Value):
     """A deviation that is normally distributed about zero."""
@@ -37,6 +38,7 @@ class Normal(checked.Value):
         return np.asarray(self.standard_deviation * ndtri(shares))
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True)
 class Uniform:
     """A deviation that is as likely anywhere between two ends."""
@@ -61,6 +63,7 @@ class Uniform:
 Spread = Normal | Uniform
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True)
 class Uncertainty:
     """How surely the inputs are known; None where an input is taken for certain.

@@ -12,6 +12,7 @@ from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.model.drum import Drum
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True, eq=False)
 class Winches(checked.Value):
     """The winches of a robot; None for what is not known, or not asked for.

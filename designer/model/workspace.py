@@ -20,6 +20,7 @@ from designer.model.verdict import Verdict
 HangsBelow = Literal["include", "exclude"]
 
 
+@checked.reports_field
 @dataclass(frozen=True, slots=True)
 class Workspace(checked.Value):
     """Which poses the cable must serve.

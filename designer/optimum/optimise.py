@@ -23,7 +23,7 @@ from designer.optimum.search import LINE, Searched, Stop, search
 from designer.optimum.trial import Examiner, Trial
 from designer.progress import SILENT, Advance, Reporter
 from designer.study import Study
-from designer.sweep.point import why_not
+from designer.sweeps.point import why_not
 
 _MOST_PROFILES = 8
 MOST_VERIFIED, FEW_VERIFIED = 24, 8

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from designer import __version__
+from designer import __version__, checked
 from designer.analysis.analyse import Analysis
 from designer.analysis.comparison import Comparison, ComparisonLine
 from designer.documents.plain import Json, csv_text, finite, json_text
@@ -42,8 +42,8 @@ class Profile:
     objective: tuple[float, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Optimum:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Optimum(checked.Shown):
     """What an optimisation found.
 
     Parameters

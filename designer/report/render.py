@@ -116,12 +116,17 @@ def render_pdf(html: str) -> bytes:
 
 
 def write_report(
-    analysis: Analysis, folder: Path | str, template: Path | str | None = None
+    analysis: Analysis,
+    folder: Path | str,
+    template: Path | str | None = None,
+    *,
+    quick: bool = False,
 ) -> None:
     """Write the report and all results into a folder, as `designer report` does; all or nothing.
 
     An earlier report in the folder is replaced. Where this machine cannot draw in space, the report
-    says which pictures are left out. ``template`` is a folder of templates that come before ours.
+    says which pictures are left out. ``template`` is a folder of templates that come before ours;
+    a ``quick`` report is page 1 in HTML alone.
 
     Raises
     ------
@@ -134,7 +139,7 @@ def write_report(
     if templates is not None:
         check_templates(templates)
     with output_folder(Path(folder), REPORT_FILES) as building:
-        write_report_files(analysis, building, templates)
+        write_report_files(analysis, building, templates, quick=quick)
 
 
 def write_report_files(
@@ -142,10 +147,14 @@ def write_report_files(
     folder: Path,
     templates: Path | None = None,
     reporter: Reporter = SILENT,
+    *,
+    quick: bool = False,
 ) -> None:
-    """Write the report and all results into an existing folder."""
-    write_pages(design_report(analysis), folder, templates, reporter)
-    write_results(analysis, folder)
+    """Write the report and all results into an existing folder; ``quick``, page 1 alone."""
+    report = design_report(analysis, quick=quick)
+    write_pages(report, folder, templates, reporter, with_pdf=not quick)
+    if not quick:
+        write_results(analysis, folder)
 
 
 def write_pages(
@@ -153,6 +162,8 @@ def write_pages(
     folder: Path,
     templates: Path | None = None,
     reporter: Reporter = SILENT,
+    *,
+    with_pdf: bool = True,
 ) -> None:
     """Write a report as HTML and, where that can be made, as PDF, into an existing folder.
 
@@ -165,14 +176,14 @@ def write_pages(
     InputError
         If a template of the user is faulty, or loads anything into its page.
     """
-    with reporter.task("pages", 2 * len(report.sections) + 1) as advance:
+    with reporter.task("pages", (1 + with_pdf) * len(report.sections) + 1) as advance:
         with told_in_one_line(templates):
             pages = [
                 render_html(report, paged=paged, user_folder=templates, advance=advance)
-                for paged in (False, True)
+                for paged in ((False, True) if with_pdf else (False,))
             ]
         try:
-            pdf = b"" if why_no_pdf() else render_pdf(pages[1])
+            pdf = b"" if why_no_pdf() or not with_pdf else render_pdf(pages[1])
         except ValueError as error:
             if templates is None:
                 raise

@@ -10,6 +10,7 @@ from typing import Literal
 
 import numpy as np
 
+from designer import checked
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable
@@ -27,8 +28,8 @@ Standing = Literal[
 """What became of a candidate; those of the first two span the Pareto set."""
 
 
-@dataclass(slots=True, eq=False)
-class Candidate:
+@dataclass(slots=True, eq=False, repr=False)
+class Candidate(checked.Shown):
     """One size of one grade as it would be on the machine; what is known of it grows.
 
     First its figures alone, then what it meets over the samples, then between them; last whether

@@ -18,12 +18,13 @@ from functools import cached_property, partial
 
 import numpy as np
 
+from designer import checked
 from designer.arrays import FloatArray, IntArray
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import HangsBelow, Workspace
-from designer.progress import Advance
+from designer.progress import Advance, steps
 from designer.selection.samples import over_kept_lengths, over_samples, sampled_at_tension
 from designer.selection.stiffening import StiffnessSearch
 from designer.selection.verify import Sampled, Verification, refined_each
@@ -49,8 +50,8 @@ _NEAR = 0.01
 """Relative: how close searches that end at the same place come on their way."""
 
 
-@dataclass(frozen=True, eq=False)
-class CaseResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class CaseResult(checked.Shown):
     """What a cable meets in one load case, or in one direction of it.
 
     Parameters
@@ -322,11 +323,12 @@ def searched_all(results: Sequence[CaseResult]) -> tuple[CaseResult, ...]:
     """
     results = _with(results, _completed(results))
     replaced: dict[CaseResult, CaseResult] = {}
-    for worst in worst_of_each(results):
+    for worst in steps("load cases", worst_of_each(results)):
         close = _close([result for result in results if result.case is worst.case])
         replaced |= _search([(result, result is not worst) for result in close])
     passed: list[CaseResult] = []
-    turned = tuple(_turned(result, passed) for result in _with(results, replaced))
+    directions = steps("directions", _with(results, replaced))
+    turned = tuple(_turned(result, passed) for result in directions)
     worst_turned = [result for result in worst_of_each(turned) if _is_turned(result)]
     return _with(turned, {result: _with_lengths(result) for result in worst_turned})
 

@@ -23,7 +23,7 @@ from designer.model.requirement import Requirement, State
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
-from designer.progress import Advance
+from designer.progress import Advance, steps
 from designer.selection.cases import CaseResult, steepest, worst_of_each
 from designer.selection.criteria import ROUNDING, WHERE, Criterion
 from designer.selection.rope_class import SOURCE, least_sheave_ratio
@@ -151,7 +151,7 @@ def _evaluate_case(
         columns = [of_case[k] for k in np.flatnonzero(worst == number)]
         demand = partial(_severity, loaded, workspace, columns)
         extremes = refine(space, demand, places, LIGHT if keeps else _OF_MANY)
-        for criterion, extreme in zip(columns, extremes, strict=True):
+        for criterion, extreme in steps("extremes", zip(columns, extremes, strict=True)):
             if np.isneginf(extreme.demand):  # no pose of the case counts
                 continue
             turned, place = _turned(criterion, loaded, workspace, extreme, again)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
+from designer import checked
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Material
 from designer.model.load_case import STATIC
@@ -172,8 +173,8 @@ def _excess(candidate: Candidate) -> float:
     return math.inf if failed is None or math.isnan(failed.utilisation) else failed.utilisation
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SelectionResult:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SelectionResult(checked.Shown):
     """The choice, and why.
 
     Parameters

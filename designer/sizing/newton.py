@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from designer import checked
 from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material, MaterialsByPose
 from designer.model.robot import Poses, Robot
@@ -14,8 +15,8 @@ from designer.statics.inverse import Statics, statics_of
 from designer.statics.task import Task, situation_at, solve_task
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Sizing:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Sizing(checked.Shown):
     """The thinnest cable of a family for each pose; NaN wherever the verdict is not solved.
 
     Parameters

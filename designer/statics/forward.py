@@ -64,6 +64,8 @@ def solve_forward(
     length_m: FloatArray,
     start: Poses,
     force_N: FloatArray | None = None,
+    *,
+    to_any: BoolArray | None = None,
 ) -> ForwardStatics:
     """Return the balance that is reached from given starts on cables of given lengths.
 
@@ -77,13 +79,17 @@ def solve_forward(
         Where the search begins (...), base frame; its axes broadcast with those of the lengths.
     force_N : array (..., 3), optional
         Force on the platform beside its weight, base frame [N].
+    to_any : array (...) of bool, optional
+        Which problems go to any balance that is near, by Newton's own steps, stable or not; the
+        others are led away from unstable ones, as all are if left out.
     """
     shape = np.broadcast_shapes(np.shape(length_m)[:-1], start.shape)
     lengths = np.broadcast_to(length_m, (*shape, robot.n_cables)).reshape(-1, robot.n_cables)
     position = np.broadcast_to(start.position_m, (*shape, 3)).reshape(-1, 3)
     rotation = np.broadcast_to(start.rotation, (*shape, 3, 3)).reshape(-1, 3, 3)
     force = None if force_N is None else np.broadcast_to(force_N, (*shape, 3)).reshape(-1, 3)
-    search = _EnergyDescent(robot, cable, lengths, Poses(position, rotation), force)
+    signed = np.broadcast_to(np.bool_(False) if to_any is None else to_any, shape).reshape(-1)
+    search = _EnergyDescent(robot, cable, lengths, Poses(position, rotation), force, signed)
     search.run()
     return _result(search, shape, force_N)
 
@@ -98,7 +104,9 @@ class _EnergyDescent:
         length_m: FloatArray,
         start: Poses,
         force_N: FloatArray | None,
+        signed: BoolArray,
     ) -> None:
+        self.signed = signed
         self.robot, self.cable, self.length_m, self.force_N = robot, cable, length_m, force_N
         self.position = start.position_m.copy()
         self.rotation = start.rotation.copy()
@@ -132,7 +140,8 @@ class _EnergyDescent:
 
     def _step(self, active: BoolArray) -> None:
         poses = Poses(self.position[active], self.rotation[active])
-        step, rounding = _newton_step(self.stiffness[active], self.push[active], self.size)
+        signed = self.signed[active]
+        step, rounding = _newton_step(self.stiffness[active], self.push[active], self.size, signed)
         length = np.linalg.norm(step, axis=-1)
         radius = self.radius[active]
         step = step * np.minimum(1.0, radius / np.maximum(length, 1e-300))[:, None]
@@ -144,7 +153,7 @@ class _EnergyDescent:
         mean_work = np.einsum("pi,pi->p", before + after, step)
         closer = np.linalg.norm(after, axis=-1) < np.linalg.norm(before, axis=-1)
         # At rest a step is kept if it comes closer.
-        is_kept = np.where(rests, closer, mean_work > 0.0)
+        is_kept = np.where(rests | signed, closer, mean_work > 0.0)
         step_m = np.minimum(length, radius)
         wider = np.maximum(radius, np.minimum(2.0 * step_m, self.size))
         self.radius[active] = np.where(rests, radius, np.where(is_kept, wider, 0.25 * step_m))
@@ -176,9 +185,12 @@ def _push(statics: Statics) -> FloatArray:
 
 
 def _newton_step(
-    stiffness: FloatArray, push: FloatArray, size: float
+    stiffness: FloatArray, push: FloatArray, size: float, signed: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the step along falling energy, and the push that rounding alone can make [N]."""
+    """Return the step along falling energy, and the push that rounding alone can make [N].
+
+    Where ``signed``, the step is that to where nothing is left, be it along rising energy.
+    """
     finite = np.asarray(np.isfinite(stiffness).all(axis=(-2, -1)))
     safe = np.where(finite[:, None, None], stiffness, np.eye(stiffness.shape[-1]))
     eigenvalues, axes = np.linalg.eigh(0.5 * (safe + np.swapaxes(safe, -1, -2)))
@@ -186,6 +198,7 @@ def _newton_step(
     stiffest = strength.max(axis=-1)
     # What is softer would take a step of any length.
     strength = np.maximum(strength, 1e-10 * stiffest[:, None])
+    strength = np.where(signed[:, None] & (eigenvalues < 0.0), -strength, strength)
     along = np.einsum("pij,pi->pj", axes, push) / strength
     return np.einsum("pij,pj->pi", axes, along), 8.0 * np.finfo(np.float64).eps * stiffest * size
 

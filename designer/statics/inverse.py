@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from designer import checked
 from designer.arrays import BoolArray, FloatArray, IntArray, VerdictArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
@@ -32,8 +33,8 @@ _MARGINAL = 0.2
 """Part of a wrench of unit length that its words leave out."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Statics:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Statics(checked.Shown):
     """Static equilibrium of poses with sagging cables; NaN wherever the verdict is not solved.
 
     Parameters

@@ -124,10 +124,13 @@ def find_equilibria(
     cable: Cable | Cables,
     length_m: FloatArray,
     starts: Poses,
+    *,
+    with_unstable: bool = False,
 ) -> Equilibria:
     """Solve the forward statics from every start, and tell the results apart.
 
-    More may exist than are found; more starts make that less likely.
+    More may exist than are found; more starts make that less likely. ``with_unstable`` begins a
+    second search at each start, which goes to any balance.
 
     Parameters
     ----------
@@ -138,7 +141,12 @@ def find_equilibria(
     starts : Poses
         Poses (n_starts,), such as `spread_poses`, the same for all problems.
     """
-    forward_statics = solve_forward(robot, cable, np.asarray(length_m)[..., None, :], starts)
+    to_any = None
+    if with_unstable:
+        to_any = np.repeat([False, True], starts.shape[0])
+        starts = Poses(np.tile(starts.position_m, (2, 1)), np.tile(starts.rotations, (2, 1, 1)))
+    length_m = np.asarray(length_m)[..., None, :]
+    forward_statics = solve_forward(robot, cable, length_m, starts, to_any=to_any)
     places = forward_statics.poses.position_m
     if not robot.is_point_mass:  # turned axes times reach, so that poses compare as points
         axes = forward_statics.poses.rotation.reshape(*places.shape[:-1], 9)

@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
+import numpy as np
+
+from designer import checked
 from designer.arrays import FloatArray
 from designer.documents.plain import record
 from designer.model.robot import Poses
@@ -16,6 +19,7 @@ from designer.workspace.hanging import HangingCables
 from designer.workspace.store import open_sweep
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 
@@ -100,8 +104,8 @@ class Census:
         return self.statuses[status] / self.samples
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class WorkspaceMap:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class WorkspaceMap(checked.Shown):
     """Sizing over the whole workspace.
 
     Parameters
@@ -155,6 +159,8 @@ class WorkspaceMap:
     def to_xarray(self) -> xr.Dataset:
         """Return every sample along ``sample``, with units in the attributes of each variable.
 
+        Along ``axis`` are x, y and z, along ``cable`` their numbers from 1.
+
         Raises
         ------
         ValueError
@@ -163,7 +169,21 @@ class WorkspaceMap:
         if self.file is None:
             raise ValueError("samples are kept in a file only; map_workspace(file=...) writes one")
         with open_sweep(self.file) as sweep:
-            return sweep.load()
+            cables = range(1, sweep.sizes["cable"] + 1)
+            return sweep.load().assign_coords(axis=[*"xyz"], cable=[*cables])
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return one row a sample, such as with the columns position_x and length_1."""
+        import pandas as pd
+
+        samples = self.to_xarray()
+        columns = {}
+        for name, variable in samples.data_vars.items():
+            labels = [*samples[variable.dims[1]].values] if variable.ndim > 1 else [None]
+            for column, label in zip(np.atleast_2d(variable.values.T), labels, strict=True):
+                columns[str(name) if label is None else f"{name}_{label}"] = column
+        columns["verdict"] = [Verdict(int(code)).label for code in columns["verdict"]]
+        return pd.DataFrame(columns).rename_axis("sample")
 
     @property
     def infeasible_example_m(self) -> FloatArray | None:

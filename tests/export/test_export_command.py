@@ -11,8 +11,8 @@ import pytest
 from test_cli import STUDY, WORKSPACE, designer
 
 from designer.cli.export import Target
-from designer.export.formats import FORMATS
-from designer.export.robot import ExportedRobot
+from designer.exports.formats import FORMATS
+from designer.exports.robot import ExportedRobot
 from designer.io.config import read_study
 
 __all__ = ["designer"]

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 import pyvista
 
-from designer.export.glb import Surface, glb
-from designer.export.gltf import to_gltf
-from designer.export.robot import ExportedRobot
+from designer.exports.glb import Surface, glb
+from designer.exports.gltf import to_gltf
+from designer.exports.robot import ExportedRobot
 from designer.io.config import read_study
 
 POINT = """

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from designer.export.caspr import to_caspr
-from designer.export.gltf import to_gltf
-from designer.export.moordyn import to_moordyn
-from designer.export.mujoco import to_mujoco
-from designer.export.robot import ExportedRobot, inertia_of, lost_by_all
+from designer.exports.caspr import to_caspr
+from designer.exports.gltf import to_gltf
+from designer.exports.moordyn import to_moordyn
+from designer.exports.mujoco import to_mujoco
+from designer.exports.robot import ExportedRobot, inertia_of, lost_by_all
 from designer.model.cable import Attached, Material
 from designer.model.load_case import LoadCase
 from designer.model.point_list import PointList

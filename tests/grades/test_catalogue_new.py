@@ -338,7 +338,7 @@ def test_what_is_in_doubt_is_asked_for_by_options() -> None:
 
 
 def test_what_is_in_doubt_is_asked_for_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(catalog_new, "_asks", lambda: True)
+    monkeypatch.setattr(catalog_new, "can_ask", lambda: True)
     answers = [
         *("2", "mm", "tons", "kN", "kg/m"),  # which tons, is asked again
         *("", "Acme", "Quarry", "6x36", "IWRC", "bright", "steel", "", "", "", "", "", "", ""),
@@ -490,7 +490,6 @@ def test_trust_is_never_the_makers_unless_said() -> None:
         ("a,b\n1,2\n", (), "acme.csv:1: diameter: no column is known to be it, of a, b"),
         (GERMAN, ("--page", "2"), "--page: acme.csv is no PDF"),
         (GERMAN.replace("70,4", "x"), (), "acme.csv:3: Mindestbruchkraft (kN): holds 'x'"),
-        (GERMAN.replace("70,4", ""), (), "acme.csv:3: Mindestbruchkraft (kN): holds nothing"),
         (GERMAN.replace("70,4", "1/" + "9" * 400), (), "holds '1/9999"),
         (GERMAN.replace("70,4", "9" * 4400), (), "holds '9999"),
         (GERMAN.replace("70,4", "1/0"), (), "holds '1/0'"),
@@ -514,6 +513,15 @@ def test_mistakes_get_a_line_and_nothing_is_written(
     text: str, options: tuple[str, ...], told: str
 ) -> None:
     assert told in refused(text, *options)[0]
+
+
+def test_sizes_that_lack_a_figure_are_left_out_and_named() -> None:
+    result = new(GERMAN.replace("70,4", ""), *LIKE, *SAID)
+    assert "left out: line 3, 10 10: no minimum_breaking_load" in result.output
+    sizes = read_grade(Path("acme.yaml")).sizes
+    Path("acme.yaml").unlink()
+    new(GERMAN, *LIKE, *SAID)
+    assert len(sizes) == len(read_grade(Path("acme.yaml")).sizes) - 1
 
 
 def test_a_file_that_exists_stays() -> None:

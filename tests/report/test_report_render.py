@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 import io
+import json
 import re
+import shutil
+import subprocess
+from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -258,3 +262,45 @@ def test_on_paper_a_group_heading_stays_with_its_first_row(report: Report) -> No
     assert re.search(lifted, render_html(report, paged=True))
     assert not re.search(lifted, render_html(report))
     assert re.search(rf'<th scope="rowgroup"[^>]*>{re.escape(title)} ', render_html(report))
+
+
+def test_scene_is_linked_from_page_1(drawn: Report) -> None:
+    if drawn.missing:
+        pytest.skip(drawn.missing)
+    page, paged = render_html(drawn), render_html(drawn, paged=True)
+    summary = page.index('<section class="first-page')
+    assert summary < page.index('href="#scene"') < page.index("</section>", summary)
+    assert re.search(r'<details class="scene" id="scene" open>', page)
+    assert "scene" not in set(re.findall(r'(?:href|id)="#?([^"]*)"', paged))
+
+
+BROKEN = """<script>addEventListener("load", () => {
+const broken = [], walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+for (let node; (node = walker.nextNode()); ) {
+  if (node.parentElement.closest("script,style,svg,iframe")) continue;
+  for (const word of node.data.matchAll(/[^\\s\\-–\\/]{2,40}/g)) {
+    const range = document.createRange();
+    range.setStart(node, word.index);
+    range.setEnd(node, word.index + word[0].length);
+    const lines = [...range.getClientRects()].filter((box) => box.width > 0);
+    if (new Set(lines.map((box) => Math.round(box.top))).size > 1) broken.push(word[0]);
+  }
+}
+document.title = "broken: " + JSON.stringify([document.documentElement.scrollWidth, ...broken]);
+});</script>"""
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="needs Chromium")
+def test_no_word_is_broken_at_500_px(report: Report, tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    page.write_text(render_html(report).replace("</body>", f"{BROKEN}</body>"), encoding="utf-8")
+    done = subprocess.run(
+        ["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", "--window-size=500,2000",
+         "--virtual-time-budget=3000", "--dump-dom", page.as_uri()],
+        capture_output=True, text=True, timeout=300, check=True,
+    )  # fmt: skip
+    title = re.search(r"<title>broken: (.*?)</title>", done.stdout)
+    assert title is not None
+    width, *words = json.loads(unescape(title[1]))
+    assert width <= 500
+    assert [word for word in words if not re.fullmatch(r"[0-9a-f]{16,40}", word)] == []

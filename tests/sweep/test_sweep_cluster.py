@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 from sweep_cases import SWEEP, written
 
-from designer.sweep.plan import read_sweep
-from designer.sweep.run import run
-from designer.sweep.store import opened
+from designer.sweeps.plan import read_sweep
+from designer.sweeps.run import run
+from designer.sweeps.store import opened
 
 pytestmark = [
     pytest.mark.slow,

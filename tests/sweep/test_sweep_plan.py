@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from designer.documents.document import Node, path_keys, path_text
-from designer.sweep.plan import Range, ValueList, columns_of
+from designer.sweeps.plan import Range, ValueList, columns_of
 
 MASS = Range(("robot", "platform", "mass"), 100.0, 300.0, "kg", 5)
 GRADE = ValueList(("cable", "grade"), (Node(1, "a", True), Node(1, "b", True)))

@@ -9,7 +9,7 @@ from sweep_cases import STUDY, SWEEP, written
 
 from designer.errors import InputError
 from designer.report.sweep import unit_of
-from designer.sweep.plan import read_sweep
+from designer.sweeps.plan import read_sweep
 
 IN_ONE_UNIT = (
     "(expected a list of values, or {from: 100 kg, to: 300 kg, count: 21}; both ends in one unit)"

@@ -24,12 +24,12 @@ from designer.analysis import analyse as stages
 from designer.cli.commands import main
 from designer.documents.document import read_document
 from designer.errors import InputError, OutputError
-from designer.sweep import run as running
-from designer.sweep import store as stores
-from designer.sweep.plan import SweepPlan, read_sweep
-from designer.sweep.point import Base, value_at, why_negative
-from designer.sweep.run import run
-from designer.sweep.store import Store, opened, read_store
+from designer.sweeps import run as running
+from designer.sweeps import store as stores
+from designer.sweeps.plan import SweepPlan, read_sweep
+from designer.sweeps.point import Base, value_at, why_negative
+from designer.sweeps.run import run
+from designer.sweeps.store import Store, opened, read_store
 
 REGION = """workspace: {region: {prism: anchors, inset: 2 m, z: [1, 7]}, samples: 50}
 selection: {}

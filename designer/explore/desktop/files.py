@@ -26,7 +26,7 @@ _ROBOTS = "Robots of CASPR and WireX (*.xml *.wcrfx);;All files (*)"
 _PLANS = "Plans (*.yaml *.yml);;All files (*)"
 _TITLE = "cdpr-designer"
 _STARTER = "fast"
-"""The study that has a comment to every field; `designer init` starts with it as well."""
+"""The study that has a comment to every field."""
 _EXPORTS: dict[What, tuple[str, str, str]] = {
     "report": ("Folder for the report", "-report", ""),
     "picture": ("Picture of the scene", ".png", "Pictures (*.png)"),

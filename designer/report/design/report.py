@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from designer.analysis.analyse import Analysis
 from designer.report.design import carries, contexts, pose, selection, workspace
@@ -53,14 +53,22 @@ def section(drawings: Drawings, section_id: str) -> Section | None:
     return Section(section_id, kind=kind, context={**shared(drawings), **context})
 
 
-def design_report(analysis: Analysis, *, draws: bool = True) -> Report:
-    """Return the report on an analysis; with ``draws`` false, without figures."""
+_QUICK = "Page 1 alone: no charts, no proof between the samples, no PDF. Not for the record."
+
+
+def design_report(analysis: Analysis, *, draws: bool = True, quick: bool = False) -> Report:
+    """Return the report on an analysis; with ``draws`` false, without figures.
+
+    A ``quick`` one has the first page alone, and says so.
+    """
     from designer.report.figures.opengl import why_no_scenes
 
+    if quick:
+        return report_from(Drawings(analysis, missing=_QUICK), ("answer",))
     return report_from(Drawings(analysis, draws, why_no_scenes() if draws else ""))
 
 
-def report_from(drawings: Drawings) -> Report:
+def report_from(drawings: Drawings, sections: Iterable[str] = dict(SECTIONS)) -> Report:
     """Return the report from its figures, and from what they show."""
     analysis = drawings.analysis
     return Report.of(
@@ -68,7 +76,7 @@ def report_from(drawings: Drawings) -> Report:
         analysis.study.name,
         "Cable design report",
         analysis.provenance.created,
-        (section(drawings, section_id) for section_id, _ in SECTIONS),
+        (section(drawings, section_id) for section_id in sections),
         version=analysis.provenance.version,
         missing=drawings.missing,
         control=control_of(analysis.study, analysis.catalogue),

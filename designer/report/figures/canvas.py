@@ -10,6 +10,7 @@ import io
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Literal
 from xml.sax.saxutils import escape, quoteattr
@@ -194,6 +195,20 @@ def names_of(points_m: FloatArray, apart_m: float) -> list[tuple[str, FloatArray
     ]
 
 
+_figures: ContextVar[list[Figure] | None] = ContextVar("figures", default=None)
+
+
+@contextmanager
+def kept_figures() -> Iterator[list[Figure]]:
+    """Have figures kept as they are in the block, instead of written as SVG."""
+    figures: list[Figure] = []
+    token = _figures.set(figures)
+    try:
+        yield figures
+    finally:
+        _figures.reset(token)
+
+
 def svg(figure: Figure, key: str, title: str) -> str:
     """Return the figure as an ``<svg>`` element that scales with its surroundings.
 
@@ -202,6 +217,10 @@ def svg(figure: Figure, key: str, title: str) -> str:
     """
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
+    figures = _figures.get()
+    if figures is not None:
+        figures.append(figure)
+        return "<svg></svg>"
     stream = io.StringIO()
     no_metadata = dict.fromkeys(("Creator", "Date", "Format", "Type"))
     sheet = figure.canvas

@@ -34,8 +34,8 @@ _HINT = "drag or arrow keys: turn · wheel or + −: zoom · click or N P: pick 
 def workspace_scene_html(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) -> str:
     """Return the workspace, cut open, as an HTML page in which it can be turned."""
     steps = scale_of(maps, quantity)
-    stage = SceneCanvas(view_of(maps), SCREEN)
     thinned = maps.thinned()
+    stage = SceneCanvas(view_of(maps), SCREEN)
     add_workspace(stage, thinned, quantity, steps)
     stage.border(maps.impossible_m)
     stage.lines(overlay.floor_lines(stage.view, bounds_m(maps)), palette.FAINT, 1.0)

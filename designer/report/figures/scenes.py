@@ -21,7 +21,7 @@ from designer.report.figures import canvas, overlay, palette
 from designer.report.figures.canvas import Style
 from designer.report.figures.colours import DIAMETER, MapQuantity, Steps, steps_for
 from designer.report.figures.parts import base_outline_m, floor_corners, grid_faces
-from designer.report.figures.stage import BORDER_OPACITY, Image, SceneCanvas
+from designer.report.figures.stage import BORDER_OPACITY, PRINT, Image, Pen, SceneCanvas
 from designer.report.figures.view import (
     Frame,
     View,
@@ -62,6 +62,18 @@ def robot_scene(
     In a pose that cannot be held the cables are drawn straight. The cable ``most_used``, from 0,
     is marked, and ``loads`` (3,) on the platform are drawn as arrows [N].
     """
+    stage, bounds, curves = robot_stage(statics, most_used)
+    with canvas.drawing():
+        figure, axes = _taken(stage, bounds)
+        arrows = _draw_loads(axes, stage.view, statics.poses.position_m, loads)
+        _label_robot(axes, stage.view, statics, curves, arrows)
+        return overlay.finished(figure)
+
+
+def robot_stage(
+    statics: Statics, most_used: int | None = None, pen: Pen = PRINT
+) -> tuple[SceneCanvas, FloatArray, FloatArray]:
+    """Return the robot in one pose on a stage, the box around it (2, 3), the cables' curves [m]."""
     robot, body = statics.robot, statics.poses.position_m[None]
     curves = cable_curves_m(statics) if statics.is_solved else chords_m(statics)
     points = np.concatenate([curves.reshape(-1, 3), robot.exit_points_m])
@@ -73,9 +85,8 @@ def robot_scene(
         lines = np.concatenate([chords_m(statics), np.stack([base[:-1], base[1:]], axis=1)])
         azimuth = clear_azimuth_rad(lines, _ROBOT_ELEVATION_RAD)
     everything = np.concatenate([floor_corners(bounds), points])
-    stage = SceneCanvas(
-        fitting(everything, azimuth, _ROBOT_ELEVATION_RAD, (0.075, 0.95, 0.13, 0.90))
-    )
+    view = fitting(everything, azimuth, _ROBOT_ELEVATION_RAD, (0.075, 0.95, 0.13, 0.90))
+    stage = SceneCanvas(view, pen)
     stage.lines(chords_m(statics), palette.MASSLESS, 1.5)  # for comparison
     if statics.is_solved:
         stage.lines(curves, palette.SAG, 7.0, 2.0)
@@ -88,12 +99,7 @@ def robot_scene(
     if robot.is_point_mass:
         stage.balls(body, 0.011 * size, palette.INK)
     stage.hull(statics.poses.attachment_points_m(robot), palette.MASSLESS)
-    with canvas.drawing():
-        figure, axes = _taken(stage, bounds)
-        _label_robot(
-            axes, stage.view, statics, curves, _draw_loads(axes, stage.view, body[0], loads)
-        )
-        return overlay.finished(figure)
+    return stage, bounds, curves
 
 
 def _draw_loads(

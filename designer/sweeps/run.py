@@ -15,9 +15,9 @@ from typing import Any
 from designer.errors import DesignerError, OutputError, described
 from designer.io.process import SPAWN, children_are_deaf, end_with_parent
 from designer.progress import SILENT, Reporter
-from designer.sweep.plan import SweepPlan
-from designer.sweep.point import solve_points
-from designer.sweep.store import Store
+from designer.sweeps.plan import SweepPlan
+from designer.sweeps.point import solve_points
+from designer.sweeps.store import Store
 
 _AHEAD = 2
 """Tasks that wait at each worker, so that none is idle while a result is stored."""

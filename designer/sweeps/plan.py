@@ -31,7 +31,7 @@ from designer.errors import Fault, InputError
 from designer.selection.candidate import common_currency
 from designer.selection.prices import offered, with_prices
 from designer.study import Study
-from designer.sweep.point import Base, value_at, why_no_value
+from designer.sweeps.point import Base, value_at, why_no_value
 from designer.units import describe
 
 MOST_POINTS = 10_000_000

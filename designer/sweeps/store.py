@@ -18,7 +18,8 @@ import numpy as np
 from designer import __version__
 from designer.errors import InputError, OutputError
 from designer.io.output import explained
-from designer.sweep.plan import SweepPlan
+from designer.io.process import written
+from designer.sweeps.plan import SweepPlan
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -104,6 +105,7 @@ def opened(path: Path, plan: SweepPlan) -> Iterator[Store]:
                 "*.partial"
             ):  # of a run that was killed while it wrote them
                 unfinished.unlink(missing_ok=True)
+            written[path] = None
             yield Store(zarr.open_group(path, mode="r+"), plan)
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from designer.export.caspr import to_caspr
-from designer.export.gltf import to_gltf
-from designer.export.moordyn import to_moordyn
-from designer.export.mujoco import to_mujoco
-from designer.export.robot import Export, ExportedRobot
-from designer.export.workshop import to_csv
+from designer.exports.caspr import to_caspr
+from designer.exports.gltf import to_gltf
+from designer.exports.moordyn import to_moordyn
+from designer.exports.mujoco import to_mujoco
+from designer.exports.robot import Export, ExportedRobot
+from designer.exports.workshop import to_csv
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +34,14 @@ class Format:
     needs_cables: bool = True
     needs_ropes: bool = False
     needs_maps: bool = False
+
+    def why_not(self, exported: ExportedRobot) -> str:
+        """Say why there is nothing to write; empty where there is."""
+        if self.needs_ropes and not exported.has_ropes():
+            return "No rope serves this study, so there is nothing to cut: see designer report."
+        if self.needs_cables and exported.design is None:
+            return "No cable serves this study, so there is nothing to write: see designer report."
+        return ""
 
 
 FORMATS = {
