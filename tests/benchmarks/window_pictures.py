@@ -27,7 +27,7 @@ def opened(name: str, theme: str) -> Window:
     """A window on a shipped study, everything answered and drawn."""
     settings = Settings(Path(mkdtemp()) / "settings.ini")
     settings.theme = theme
-    window = Window(find_plugins(with_plugins=False), settings)
+    window = Window(lambda: find_plugins(with_plugins=False), settings)
     window.show()
     window.files.open(example_file(name))
     rest(window)
@@ -84,7 +84,7 @@ def main() -> None:
     window.close()
     settings = Settings(Path(mkdtemp()) / "settings.ini")
     settings.theme = "light"
-    start = Window(find_plugins(with_plugins=False), settings)
+    start = Window(lambda: find_plugins(with_plugins=False), settings)
     start.show()
     rest(start)
     keep(start.grab(), "window-start")

@@ -5,14 +5,18 @@ from __future__ import annotations
 import signal
 import socket
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSocketNotifier, QTimer
 from PySide6.QtWidgets import QApplication
 
 from designer.explore.desktop.settings import Settings
 from designer.explore.desktop.window import Window
-from designer.plugins.find import Plugins
+
+if TYPE_CHECKING:
+    from designer.plugins.find import Plugins
 
 _LONGEST_S = 300
 """Room for kernels that are compiled first and a large map, on a machine with other work."""
@@ -31,7 +35,10 @@ def application() -> QApplication:
 
 
 def run(
-    config: Path | None, screenshot: Path | None, plugins: Plugins, settings: Settings | None = None
+    config: Path | None,
+    screenshot: Path | None,
+    plugins: Callable[[], Plugins],
+    settings: Settings | None = None,
 ) -> int:
     """Open the window, on a study if there is one; return the exit status.
 

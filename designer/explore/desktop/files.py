@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
@@ -15,11 +16,13 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 from designer.errors import DesignerError
 from designer.explore.desktop.live_session import LONG, NAMES, LiveSession
 from designer.explore.desktop.settings import Settings
-from designer.explore.export import OptimisedStudy, What, Written
-from designer.explore.session import Session
-from designer.plugins.find import Plugins
 from designer.report import format as fmt
 from designer.resources import example_file
+
+if TYPE_CHECKING:
+    from designer.explore.export import OptimisedStudy, What, Written
+    from designer.explore.session import Session
+    from designer.plugins.find import Plugins
 
 _STUDIES = "Studies (*.yaml *.yml);;All files (*)"
 _ROBOTS = "Robots of CASPR and WireX (*.xml *.wcrfx);;All files (*)"
@@ -47,19 +50,25 @@ class Files(QObject):
         What the dialogs stand before.
     live : LiveSession
         The open study.
-    plugins : Plugins
-        What studies are read with.
+    plugins : callable
+        Finds what studies are read with; called when one is opened.
     settings : Settings
         Where studies that were open are remembered.
     """
 
     notice = Signal(str, tuple)
     """A line that asks for attention, and the names of its buttons; no line for no text."""
+    opening = Signal(str)
+    """A study of this name is about to be opened."""
     not_opened = Signal()
     """A study could not be opened, and may be gone."""
 
     def __init__(
-        self, parent: QWidget, live: LiveSession, plugins: Plugins, settings: Settings
+        self,
+        parent: QWidget,
+        live: LiveSession,
+        plugins: Callable[[], Plugins],
+        settings: Settings,
     ) -> None:
         super().__init__(parent)
         self._parent, self._live = parent, live
@@ -102,7 +111,10 @@ class Files(QObject):
         opened: list[Session] = []
         if not self.may_leave():
             return
-        if not self._succeeds(lambda: opened.append(Session.open(path, self._plugins)), _TITLE):
+        self.opening.emit(path.stem)
+        from designer.explore.session import Session
+
+        if not self._succeeds(lambda: opened.append(Session.open(path, self._plugins())), _TITLE):
             self.not_opened.emit()
             return
         if opened[0].file is not None:

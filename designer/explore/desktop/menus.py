@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence
@@ -20,13 +19,12 @@ from PySide6.QtWidgets import (
 
 from designer import __version__
 from designer.explore.desktop import theme as themes
-from designer.explore.export import What
 from designer.explore.quantities import QUANTITIES
-from designer.explore.session import Session
 from designer.resources import example_file, example_names
 
 if TYPE_CHECKING:
     from designer.explore.desktop.window import Window
+    from designer.explore.export import What
 
 _KEY = QKeySequence.StandardKey
 _VIEWS = (
@@ -41,6 +39,7 @@ _EXPORTS: tuple[tuple[str, What, str, str, str], ...] = (
     ("tables", "tables", "&Tables …", "Ctrl+Shift+T", "Cables, map and ropes as CSV"),
     ("map", "vtk", "&Map for ParaView …", "Ctrl+Shift+M", "The map as a VTK grid"),
 )
+PANELS = ("Study", "Here", "Ropes", "Requirements", "Compare", "Measured data", "Messages")
 _THEMES = {"system": "As the system", "light": "Light", "dark": "Dark"}
 HINT = (
     "Drag the ring to move the platform, its arrow to lift it; click the map to go there; "
@@ -149,7 +148,7 @@ class Menus:
             menu.addMenu("E&xport"),
             *(
                 Command(f"export {name}", text, keys, tip,
-                        partial(files.export, content, window.work.scene))
+                        lambda content=content: files.export(content, window.work.scene))
                 for name, content, text, keys, tip in _EXPORTS
             ),
         )  # fmt: skip
@@ -169,9 +168,9 @@ class Menus:
         self._add(
             self._menu("&Edit", "edit menu"),
             Command("undo", "&Undo", "Ctrl+Z", "Take back the last step",
-                    partial(live.do, Session.undo), _KEY.Undo),
+                    lambda: live.do(lambda session: session.undo()), _KEY.Undo),
             Command("redo", "&Redo", "Ctrl+Shift+Z", "Do it again",
-                    partial(live.do, Session.redo), _KEY.Redo),
+                    lambda: live.do(lambda session: session.redo()), _KEY.Redo),
             None,
             Command("put all back", "&Put everything back", "",
                     "Make the whole study as the file has it", live.put_all_back),
@@ -187,7 +186,7 @@ class Menus:
         for quantity in QUANTITIES:
             self.quantities[quantity.key].setToolTip(quantity.definition)
         views = (
-            Command(f"look {view}", text, keys, tip, partial(window.work.look, view))
+            Command(f"look {view}", text, keys, tip, lambda view=view: window.work.look(view))
             for view, text, keys, tip in _VIEWS
         )
         self._add(menu, None, *views, None)
@@ -196,7 +195,7 @@ class Menus:
         options = [(name, _THEMES[name], "") for name in themes.CHOICES]
         self.themes = self._options(look, options, window.put_on)
         panels = menu.addMenu("&Panels")
-        for name in window.docks:
+        for name in PANELS:
             is_shown = name not in window.settings.hidden_panels
             action = QAction(name, window, checkable=True, checked=is_shown)
             action.setObjectName(f"panel {name}")

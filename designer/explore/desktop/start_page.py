@@ -33,6 +33,8 @@ class StartPage(QScrollArea):
     """A study's file was chosen."""
     asks_for_file = Signal()
     """The user wants to look for a file."""
+    asks_for_new = Signal()
+    asks_to_import = Signal()
 
     def __init__(self, settings: Settings) -> None:
         super().__init__()
@@ -56,12 +58,15 @@ class StartPage(QScrollArea):
     def show_recent(self) -> None:
         """Show the studies that were open before."""
         emptied(self._recent)
-        sought = button("open", "Open a study …", self.asks_for_file.emit)
-        sought.setShortcut("Ctrl+O")
         question = label("Which cable, how thick, and how sure is that?", "muted")
         fill(self._recent, label("cdpr-designer", "title"), question)
         self._recent.addSpacing(12)
-        self._recent.addWidget(sought)
+        ways = (  # their keys are those of the menu
+            ("new study", "New study", self.asks_for_new, "A study with a comment to every field"),
+            ("open", "Open a study …", self.asks_for_file, "A study of yours"),
+            ("import", "Import a robot …", self.asks_to_import, "A robot of CASPR or WireX"),
+        )
+        fill(self._recent, *(button(name, text, ask.emit, tip) for name, text, ask, tip in ways))
         self._recent.addSpacing(12)
         self._recent.addWidget(label("Recent", "heading"))
         studies = self._settings.recent

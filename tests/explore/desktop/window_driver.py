@@ -46,7 +46,8 @@ class Driver:
         self.bot = bot
         self.settings = Settings(folder / "settings.ini")
         self.settings.theme = theme or self.settings.theme
-        self.window = Window(plugins or find_plugins(with_plugins=False), self.settings)
+        plugins = plugins or find_plugins(with_plugins=False)
+        self.window = Window(lambda: plugins, self.settings)
         with bot.waitExposed(self.window):
             self.window.show()
         self.window.activateWindow()  # without a window manager nobody else does it
