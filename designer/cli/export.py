@@ -71,11 +71,9 @@ def export(
     with output_folder(path.parent) as building, ProgressBars() as bars:
         require_file(path)  # what is in the way shows before the work
         exported = ExportedRobot.of(study, catalogue, bars, with_maps=kind.needs_maps)
-        if kind.needs_ropes and not exported.has_ropes():
-            show("No rope serves this study, so there is nothing to cut: see designer report.")
-            return False
-        if kind.needs_cables and exported.design is None:
-            show("No cable serves this study, so there is nothing to write: see designer report.")
+        refusal = kind.refusal(exported)
+        if refusal:
+            show(f"{refusal}: see designer report.")
             return False
         made = kind.write(exported, path.name.removesuffix(kind.ending))
         for name, content in made.files.items():

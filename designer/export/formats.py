@@ -35,6 +35,14 @@ class Format:
     needs_ropes: bool = False
     needs_maps: bool = False
 
+    def refusal(self, exported: ExportedRobot) -> str:
+        """Return why there is nothing to write, in a clause; empty where there is something."""
+        if self.needs_ropes and not exported.has_ropes():
+            return "No rope serves this study, so there is nothing to cut"
+        if self.needs_cables and exported.design is None:
+            return "No cable serves this study, so there is nothing to write"
+        return ""
+
 
 FORMATS = {
     "caspr": Format(to_caspr, "_bodies.xml", needs_cables=False),

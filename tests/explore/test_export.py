@@ -37,7 +37,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 
 @pytest.mark.slow
 def test_tables(question: Question, tmp_path: Path) -> None:
-    written = export(question, SILENT, content="tables", target=tmp_path / "out")
+    written = export(question, SILENT, content="tables", target=tmp_path / "out").files
     assert [path.name for path in written] == ["cables.csv", "map.csv", "ropes.csv"]
     cables = rows_of(written[0])
     assert [float(row["length_m"]) for row in cables] == [
@@ -56,7 +56,7 @@ def test_tables(question: Question, tmp_path: Path) -> None:
 def test_the_map_for_paraview(question: Question, tmp_path: Path) -> None:
     import pyvista as pv
 
-    (path,) = export(question, SILENT, content="vtk", target=tmp_path / "map.vtu")
+    (path,) = export(question, SILENT, content="vtk", target=tmp_path / "map.vtu").files
     mesh: Any = pv.read(path)
     chart = map_answer(question, fine=True)
     points = map_columns(chart)
@@ -83,7 +83,7 @@ def test_nothing_is_written_where_it_cannot_be(question: Question, tmp_path: Pat
 
 @pytest.mark.slow
 def test_the_report_is_that_of_the_command(question: Question, tmp_path: Path) -> None:
-    written = export(question, SILENT, content="report", target=tmp_path / "report")
+    written = export(question, SILENT, content="report", target=tmp_path / "report").files
     assert written[0].name == "report.html"
     result = json.loads((tmp_path / "report" / "result.json").read_text(encoding="utf-8"))
     own = analyse(question.study, question.catalogue).to_dict()

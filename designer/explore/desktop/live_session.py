@@ -32,6 +32,7 @@ _SHOWN_AS: dict[Kind, tuple[str, ...]] = {
     "coarse": ("map",),
     "fine": ("map",),
     "select": ("select", "ropes"),
+    "requirements": ("select",),
 }
 """What an answer is shown as, where that is not its kind."""
 LONG: tuple[Long, ...] = ("select", "diagnose", "export", "optimise", "sweep")
@@ -43,6 +44,7 @@ NAMES: dict[str, str] = {
     "worst": "the worst pose",
     "ropes": "the candidates",
     "select": "the full selection",
+    "requirements": "the requirements",
     "residuals": "the residuals",
     "diagnose": "the diagnosis",
     "export": "the export",
@@ -377,6 +379,8 @@ class LiveSession(QObject):
             for kind in kinds:
                 self._ask(kind, self.question)
             self._ask("here", self.question, settled=True)
+            if self.question.study.selection is None:
+                self._ask("requirements", self.question)
             if self.question.study.measurements is not None:
                 self._ask("residuals", self.question)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence
@@ -38,6 +39,12 @@ _EXPORTS: tuple[tuple[str, What, str, str, str], ...] = (
     ("picture", "picture", "&Picture …", "Ctrl+Shift+P", "The scene as it is seen"),
     ("tables", "tables", "&Tables …", "Ctrl+Shift+T", "Cables, map and ropes as CSV"),
     ("map", "vtk", "&Map for ParaView …", "Ctrl+Shift+M", "The map as a VTK grid"),
+    ("path lengths", "lengths", "&Lengths along the path …", "", "Set-points for the winches"),
+    ("workshop", "csv", "&Workshop …", "", "Rows of ropes, lengths to cut and drums"),
+    ("CASPR", "caspr", "&CASPR …", "", "A model of CASPR"),
+    ("MoorDyn", "moordyn", "Moor&Dyn …", "", "A deck of MoorDyn, which MoorPy reads too"),
+    ("MuJoCo", "mujoco", "M&uJoCo …", "", "An MJCF model"),
+    ("glTF", "gltf", "&glTF …", "", "What the report draws in space"),
 )
 PANELS = ("Study", "Here", "Ropes", "Requirements", "Compare", "Measured data", "Messages")
 _THEMES = {"system": "As the system", "light": "Light", "dark": "Dark"}
@@ -148,9 +155,11 @@ class Menus:
             menu.addMenu("E&xport"),
             *(
                 Command(f"export {name}", text, keys, tip,
-                        lambda content=content: files.export(content, window.work.scene))
+                        partial(self._export, content))
                 for name, content, text, keys, tip in _EXPORTS
             ),
+            Command("export lengths", "Lengths at &poses …", "", "At the poses of a table",
+                    files.export_lengths),
         )  # fmt: skip
         self._add(
             menu,
@@ -186,7 +195,7 @@ class Menus:
         for quantity in QUANTITIES:
             self.quantities[quantity.key].setToolTip(quantity.definition)
         views = (
-            Command(f"look {view}", text, keys, tip, lambda view=view: window.work.look(view))
+            Command(f"look {view}", text, keys, tip, partial(self._look, view))
             for view, text, keys, tip in _VIEWS
         )
         self._add(menu, None, *views, None)
@@ -219,6 +228,15 @@ class Menus:
             Command("keep pose", "&Keep as the pose of the study", "Ctrl+K",
                     "Writes this place under `pose`", live.keep_pose),
         )  # fmt: skip
+
+    def _export(self, content: What) -> None:
+        if content == "picture":
+            self._window.files.save_picture(self._window.work.scene)
+        else:
+            self._window.files.export(content)
+
+    def _look(self, view: str) -> None:
+        self._window.work.look(view)
 
     def _add(self, menu: QMenu, *commands: Command | None) -> None:
         """Put commands into a menu; None is a line between them."""
@@ -285,6 +303,10 @@ class Menus:
             **dict.fromkeys(("keep pose", "pin", "optimise", "sweep"), at_work),
             "release": live.pinned is not None,
             **{f"export {name}": at_work for name, *_ in _EXPORTS},
+            "export lengths": at_work,
+            "export path lengths": at_work
+            and study is not None
+            and study.robot.platform.motion is not None,
             **{f"look {view}": at_work for view, *_ in _VIEWS},
         }
         for name, is_allowed in allowed.items():

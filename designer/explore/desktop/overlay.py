@@ -58,9 +58,7 @@ class Overlay(QWidget):
         if len(self.rule_m) < 2:
             return ""
         apart = self.rule_m[1] - self.rule_m[0]
-        return (
-            f"{fmt.fixed(float(np.linalg.norm(apart)), 3)} m, along x, y, z {fmt.position(apart)}"
-        )
+        return f"{fmt.fixed(float(np.linalg.norm(apart)), 3)} m\nΔ {fmt.position(apart)}"
 
     def handle_px(self, place_m: FloatArray | None) -> tuple[FloatArray, FloatArray] | None:
         """Return where the handle of a place is, and the tip of its upward arrow [px]."""
@@ -115,7 +113,7 @@ class Overlay(QWidget):
             for end in ends:
                 painter.drawEllipse(end, 4, 4)
         if len(ends) == 2:
-            self._write_boxed(painter, 0.5 * (ends[0] + ends[1]) + QPointF(8, 8), self.rule_text())
+            self._write_boxed(painter, (ends[0] + ends[1]) / 2.0 + QPointF(8, 8), self.rule_text())
 
     def _draw_handle(self, painter: QPainter, place_m: FloatArray | None) -> None:
         handle = self.handle_px(place_m)
@@ -143,7 +141,8 @@ class Overlay(QWidget):
         box = QRectF(painter.boundingRect(QRectF(0, 0, 460, 400), 0, text))
         box.moveTo(place)
         box.adjust(0, 0, 16, 10)
-        box.moveRight(min(box.right(), self.width() - 4))
+        box.moveRight(min(box.right(), self.width() - self.legend_px - 4))
+        box.moveLeft(max(box.left(), 4))
         box.moveBottom(min(box.bottom(), self.height() - 4))
         ground = QColor(theme.current().raised)
         ground.setAlpha(235)

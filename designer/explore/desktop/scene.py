@@ -221,6 +221,7 @@ class SceneView(QtInteractor):
         elif self._grip:
             self.choose_exit_point(self._gripped)
         else:
+            self.choose_exit_point(None)
             hit = self._hit(place)
             if hit is not None:
                 self.asks_for_position.emit(hit.position_m, False)

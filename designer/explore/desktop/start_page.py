@@ -46,6 +46,7 @@ class StartPage(QScrollArea):
         columns.setContentsMargins(28, 24, 28, 24)
         columns.setSpacing(28)
         self._recent = QVBoxLayout()
+        self._recent.setSpacing(8)
         columns.addLayout(self._recent, 1)
         columns.addLayout(self._shipped(), 4)
         self.setWidget(inside)
