@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
 
 from designer.analysis.analyse import analyse
-from designer.errors import OutputError
-from designer.explore.export import COLUMNS, export, map_columns
+from designer.errors import DesignerError, InputError, OutputError
+from designer.explore.export import COLUMNS, What, export, map_columns
 from designer.explore.here import here
 from designer.explore.map import map_answer
 from designer.explore.question import Question, Rope
 from designer.explore.session import Session
+from designer.export.formats import FORMATS
+from designer.export.robot import ExportedRobot
 from designer.progress import SILENT
 
 
@@ -102,3 +105,48 @@ def test_a_report_that_is_given_up_leaves_nothing(
     asker.worker.cancel("export")
     assert asker.end_of(number).status == "cancelled"
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "target"),
+    [("csv", "cables.csv"), ("caspr", "rig_bodies.xml"), ("moordyn", "rig.txt"),
+     ("mujoco", "rig.xml"), ("gltf", "rig.glb")],
+)  # fmt: skip
+def test_formats_are_those_of_the_command(
+    question: Question, tmp_path: Path, name: str, target: str
+) -> None:
+    made = export(question, SILENT, content=name, target=tmp_path / target)  # type: ignore[arg-type]
+    robot = ExportedRobot.of(question.study, question.catalogue, with_maps=FORMATS[name].needs_maps)
+    own = FORMATS[name].write(robot, target.removesuffix(FORMATS[name].ending))
+    assert made.files[0] == tmp_path / target
+    assert {file.name: file.read_bytes() for file in made.files} == dict(own.files)
+    assert made.remarks == tuple(f"Not in it: {line}" for line in own.lost)
+    with pytest.raises(OutputError, match=FORMATS[name].ending):
+        export(question, SILENT, content=name, target=tmp_path / "rig.odd")  # type: ignore[arg-type]
+
+
+def test_every_format_of_the_command_can_be_exported() -> None:
+    assert set(FORMATS) | {"report", "lengths"} <= set(get_args(What))
+
+
+def test_lengths_at_poses_of_a_table(question: Question, tmp_path: Path) -> None:
+    poses, target = tmp_path / "poses.csv", tmp_path / "lengths.csv"
+    poses.write_text("x_m,y_m,z_m\n15,9,4\n15,9,50\n", encoding="utf-8")
+    written = export(question, SILENT, content="lengths", target=target, poses=poses)
+    first, last = rows_of(written.files[0])
+    assert first["verdict"] == "solved"
+    assert float(first["length_1_m"]) == pytest.approx(19.0, abs=0.5)
+    assert last["length_1_m"] == ""
+    assert any("1 of 2 poses not held" in line for line in written.remarks)
+    with pytest.raises(InputError, match=r"no workspace\.path"):
+        export(question, SILENT, content="lengths", target=target)
+
+
+def test_nothing_is_exported_without_a_rope(question: Question, tmp_path: Path) -> None:
+    question = replace(
+        question,
+        study=replace(question.study, selection=replace(question.selection, safety_factor=500.0)),
+    )
+    with pytest.raises(DesignerError, match="No rope serves this study"):
+        export(question, SILENT, content="csv", target=tmp_path / "cables.csv")
+    assert not list(tmp_path.iterdir())

@@ -60,6 +60,7 @@ class Driver:
 
     def reset(self) -> None:
         """Show what is shown at first."""
+        self.window.furnish()
         work = self.window.work
         self.window.live.session = None
         for box in (work.surface, work.slice):
