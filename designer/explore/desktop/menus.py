@@ -55,7 +55,15 @@ HINT = (
 KEYS = (
     ("Drag the ring around the platform", "moves it in its level (a planar robot in its plane)"),
     ("Drag the arrow above the ring", "lifts and lowers it"),
+    (
+        "Drag an exit point",
+        "moves it in its level, and edits the study; it takes the coordinates "
+        "of other exit points and of a grid, unless Ctrl is held",
+    ),
+    ("Click on an exit point", "gives it an arrow, which lifts and lowers it"),
     ("Click on the map", "takes the platform there"),
+    ("Ctrl + M", "measures the distance between two points that are clicked"),
+    ("Ctrl + P", "plays the path of the study"),
     ("Arrow keys", "move it along the axis of the frame that is nearest to that direction"),
     ("Page Up, Page Down", "lift and lower it"),
     ("Ctrl + these keys", "turn a platform that can turn, by one degree"),

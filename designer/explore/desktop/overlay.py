@@ -113,7 +113,8 @@ class Overlay(QWidget):
             for end in ends:
                 painter.drawEllipse(end, 4, 4)
         if len(ends) == 2:
-            self._write_boxed(painter, (ends[0] + ends[1]) / 2.0 + QPointF(8, 8), self.rule_text())
+            lower = max(ends, key=lambda end: end.y())
+            self._write_boxed(painter, lower + QPointF(8, 8), self.rule_text())
 
     def _draw_handle(self, painter: QPainter, place_m: FloatArray | None) -> None:
         handle = self.handle_px(place_m)

@@ -19,7 +19,7 @@ from pyvistaqt import QtInteractor
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.explore.desktop import theme
 from designer.explore.desktop.overlay import ARROW_PX, HANDLE_PX, Legend, Overlay
-from designer.explore.desktop.scene_actors import SceneActors
+from designer.explore.desktop.scene_actors import NEAR_PX, SceneActors
 from designer.report import format as fmt
 from designer.report.figures.view import View
 
@@ -42,8 +42,8 @@ _STEPS = {
 """To the right and away from the viewer, along the nearest axis of the frame, and upward."""
 _TURN_RAD = float(np.radians(1.0))
 """How far a key turns the platform."""
-_NEAR_PX, _SNAP_PX = 10.0, 8.0
-"""How far from a point a hand with a mouse takes hold of it, and of its coordinates."""
+_SNAP_PX = 8.0
+"""As near an exit point takes the coordinate of another."""
 _ALONG = 1e-9
 """Of a normal, along an axis that lies in its plane."""
 
@@ -188,9 +188,7 @@ class SceneView(QtInteractor):
         step, self._last = pixel - self._last, pixel
         buttons, modifiers = event.buttons(), event.modifiers()
         if self._grip:
-            self._drag(
-                event.position(), True, snaps=not modifiers & Qt.KeyboardModifier.AltModifier
-            )
+            self._drag(event, True)
         elif (
             buttons & Qt.MouseButton.LeftButton
             and not modifiers & Qt.KeyboardModifier.ShiftModifier
@@ -207,8 +205,7 @@ class SceneView(QtInteractor):
         moved = (event.position().toPoint() - pressed).manhattanLength()
         if moved > _CLICK_PX:
             if self._grip:
-                snaps = not event.modifiers() & Qt.KeyboardModifier.AltModifier
-                self._drag(event.position(), False, snaps=snaps)
+                self._drag(event, False)
         elif event.button() == Qt.MouseButton.LeftButton:
             self._click(event.position())
         self._grip = ""
@@ -248,12 +245,11 @@ class SceneView(QtInteractor):
     def _measure(self, place: QPointF, *, is_end: bool) -> None:
         """Lay an end of the rule onto a point of robot or map; it follows the mouse until then."""
         platform = [] if self.overlay.platform_m is None else [self.overlay.platform_m]
-        points = np.array([*self.exit_points_m, *self.stage.attachments_m, *platform]).reshape(
-            -1, 3
-        )
+        points = np.array([*self.exit_points_m, *self.stage.attachments_m, *platform])
         away = np.linalg.norm(self.view.pixels(points) - [place.x(), place.y()], axis=1)
-        hit = None if (away <= _NEAR_PX).any() else self._hit(place)
-        if hit is not None or (away <= _NEAR_PX).any():
+        is_point = bool(away.min() <= NEAR_PX)
+        hit = None if is_point else self._hit(place)
+        if hit is not None or is_point:
             end_m = points[away.argmin()] if hit is None else hit.position_m
             start = [] if self._has_measured else self.overlay.rule_m[:1]
             self.overlay.rule_m = [*start, np.array(end_m)]
@@ -334,7 +330,7 @@ class SceneView(QtInteractor):
             if abs(across) <= 8 and -6 <= down <= ARROW_PX - HANDLE_PX:
                 return "upright", number
         away = np.linalg.norm(self.view.pixels(self.exit_points_m) - pixel, axis=-1)
-        is_near = len(away) > 0 and away.min() <= _NEAR_PX
+        is_near = len(away) > 0 and away.min() <= NEAR_PX
         return ("level", int(away.argmin())) if is_near else ("", None)
 
     @property
@@ -355,8 +351,9 @@ class SceneView(QtInteractor):
         under = view.on_plane(place.x(), place.y(), platform, facing)
         return None if under is None else np.array([*platform[:2], under[2]])
 
-    def _drag(self, place: QPointF, moving: bool, *, snaps: bool) -> None:
-        under, number = self._dragged_to(place), self._gripped
+    def _drag(self, event: QMouseEvent, moving: bool) -> None:
+        """Take what is gripped along; an exit point snaps, unless Ctrl is held."""
+        under, number = self._dragged_to(event.position()), self._gripped
         if under is None:
             return
         target_m = under + self._grip_offset
@@ -364,7 +361,7 @@ class SceneView(QtInteractor):
             self.asks_for_position.emit(target_m, moving)
             return
         text = f"A{number + 1}"
-        if snaps:
+        if not event.modifiers() & Qt.KeyboardModifier.ControlModifier:
             others_m = np.delete(self.exit_points_m, number, axis=0)
             is_free = np.array([False, False, True])
             if self._grip == "level":

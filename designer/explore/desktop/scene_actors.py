@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from designer.explore.map import MapAnswer
     from designer.study import Study
 
-_NEAR_PX = 10.0
+NEAR_PX = 10.0
 """As far as a hand with a mouse misses a dot."""
 
 _BELOW = 5e-3
@@ -168,7 +168,7 @@ class SceneActors:
         if len(self._points_m):
             away = np.linalg.norm(view.pixels(self._points_m) - pixel, axis=1)
             number = int(np.argmin(away))
-            is_near = away[number] <= _NEAR_PX
+            is_near = away[number] <= NEAR_PX
             return Hit(self._points_m[number], "points", number) if is_near else None
         hits = [
             hit

@@ -46,8 +46,7 @@ class StartPage(QScrollArea):
         columns.setContentsMargins(28, 24, 28, 24)
         columns.setSpacing(28)
         self._recent = QVBoxLayout()
-        self._recent.setSpacing(8)
-        columns.addLayout(self._recent, 1)
+        columns.addLayout(self._ways(), 1)
         columns.addLayout(self._shipped(), 4)
         self.setWidget(inside)
 
@@ -59,17 +58,6 @@ class StartPage(QScrollArea):
     def show_recent(self) -> None:
         """Show the studies that were open before."""
         emptied(self._recent)
-        question = label("Which cable, how thick, and how sure is that?", "muted")
-        fill(self._recent, label("cdpr-designer", "title"), question)
-        self._recent.addSpacing(12)
-        ways = (  # their keys are those of the menu
-            ("new study", "New study", self.asks_for_new, "A study with a comment to every field"),
-            ("open", "Open a study …", self.asks_for_file, "A study of yours"),
-            ("import", "Import a robot …", self.asks_to_import, "A robot of CASPR or WireX"),
-        )
-        fill(self._recent, *(button(name, text, ask.emit, tip) for name, text, ask, tip in ways))
-        self._recent.addSpacing(12)
-        self._recent.addWidget(label("Recent", "heading"))
         studies = self._settings.recent
         for path in studies:
             entry = _StudyButton(path.stem, str(path.parent))
@@ -78,7 +66,23 @@ class StartPage(QScrollArea):
             self._recent.addWidget(entry)
         if not studies:
             self._recent.addWidget(label("Studies that you open stand here.", "muted"))
-        self._recent.addStretch(1)
+
+    def _ways(self) -> QVBoxLayout:
+        """How to begin; the keys of that are those of the menu."""
+        column = QVBoxLayout()
+        column.setSpacing(8)
+        question = label("Which cable, how thick, and how sure is that?", "muted")
+        fill(column, label("cdpr-designer", "title"), question)
+        column.addSpacing(12)
+        ways = (
+            ("new study", "New study", self.asks_for_new, "A study with a comment to every field"),
+            ("open", "Open a study …", self.asks_for_file, "A study of yours"),
+            ("import", "Import a robot …", self.asks_to_import, "A robot of CASPR or WireX"),
+        )
+        fill(column, *(button(name, text, ask.emit, tip) for name, text, ask, tip in ways))
+        column.addSpacing(12)
+        fill(column, label("Recent", "heading"), self._recent, None)
+        return column
 
     def _shipped(self) -> QVBoxLayout:
         column = QVBoxLayout()

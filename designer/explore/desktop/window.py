@@ -227,6 +227,9 @@ class Window(QMainWindow):
         self.settings.keep_bytes("geometry", self.saveGeometry())
         if self.docks and self.pages.currentWidget() is self.work:
             self.settings.keep_bytes("layout", self.saveState())
+        if self.docks:  # nothing moves any more
+            self.here.modes.close()
+            self.work.plays_path.setChecked(False)
         self.live.close()
         if self.docks:
             self.work.scene.close()

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from designer.explore.here import Here
     from designer.explore.map import MapAnswer, WorstAnswer
     from designer.explore.measurements import Residuals
-    from designer.model.motion import Motion
     from designer.study import Study
 
 FACTORS = (1, 2, 5, 10, 20, 50)
@@ -68,7 +67,7 @@ class WorkPage(QWidget):
         self._shows_rows = self._is_old = False
         self._view = "home"
         self._mode: FloatArray | None = None
-        self._play_start_s = 0.0
+        self._play_start_s, self._path_note = 0.0, ""
         self._frames = QTimer(self, interval=_FRAME_MS)
         self._frames.timeout.connect(self._next_frame)
         self._notice = Notice()
@@ -154,7 +153,7 @@ class WorkPage(QWidget):
         )
         self.rule.setShortcut("Ctrl+M")
         self.plays_path.setShortcut("Ctrl+P")
-        colours = beside("Colour by", self.quantity, self.holds_scale)
+        colours = beside("Colour by", self.quantity, self.holds_scale, None)
         shown = beside(
             self.surface, self.slice, self.exaggeration, self.rule, self.plays_path, None
         )
@@ -249,10 +248,10 @@ class WorkPage(QWidget):
 
     def _play(self, is_playing: bool) -> None:
         """Move the platform along the path from its start, or leave it where it is."""
-        self._play_start_s = time.monotonic()
+        self._play_start_s, self._path_note = time.monotonic(), ""
         self._follow_motion()
-        if not is_playing:
-            self._live.do(lambda session: session.settle())
+        if not is_playing and self._live.session is not None:
+            self._live.move(self._live.session.state.place)  # it rests there
             self._show_place()
 
     def play_mode(self, shape: FloatArray | None) -> None:
@@ -274,15 +273,15 @@ class WorkPage(QWidget):
         if motion is None or not self.isVisible():
             self.plays_path.setChecked(False)
         elif "here" not in self._live.busy:
-            played_s = (time.monotonic() - self._play_start_s) * self._pace(motion)
-            number = int(np.searchsorted(motion.time_s - motion.time_s[0], played_s))
-            self._live.move(motion.places[min(number, len(motion.places) - 1)], True)
-            self._write_note()
-            if number >= len(motion.places):
+            time_s = motion.time_s - motion.time_s[0]
+            pace = max(float(time_s[-1]) / _LONGEST_S, 1.0)
+            number = int(np.searchsorted(time_s, (time.monotonic() - self._play_start_s) * pace))
+            if number == len(time_s):
                 self.plays_path.setChecked(False)
-
-    def _pace(self, motion: Motion) -> float:
-        return max(float(np.ptp(motion.time_s)) / _LONGEST_S, 1.0)
+                return
+            faster = f", {fmt.number(pace, 2)} times as fast" if pace > 1.0 else ""
+            self._path_note = f"path: {time_s[number]:.1f} s of {time_s[-1]:.1f} s{faster}"
+            self._live.move(motion.places[number], True)
 
     def _deflected(self, mode: FloatArray) -> FloatArray:
         """Where the platform is in a mode at this time, drawn far larger than it is."""
@@ -357,20 +356,9 @@ class WorkPage(QWidget):
         scale = f"residual from 0 (dark) to {_BRIGHTEST:g} times the noise (bright)"
         rows = f"measured rows: {scale}" if has_rows else ""
         mode = "mode drawn far larger than it is" if self._mode is not None else ""
-        lines = [sag, rows, mode, self._path_words()]
-        self.scene.overlay.note = "\n".join(filter(None, lines))
+        lines = filter(None, [sag, rows, mode, self._path_note])
+        self.scene.overlay.note = "\n".join(lines)
         self.scene.overlay.update()
-
-    def _path_words(self) -> str:
-        """Which instant of the path is seen, while it is played."""
-        motion = None if self._study is None else self._study.robot.platform.motion
-        if motion is None or not self.plays_path.isChecked():
-            return ""
-        number = int(np.abs(motion.places - self._place).sum(axis=1).argmin())
-        pace = self._pace(motion)
-        faster = f", {fmt.number(pace, 2)} times as fast" if pace > 1.0 else ""
-        passed_s, all_s = motion.time_s[number] - motion.time_s[0], np.ptp(motion.time_s)
-        return f"path: {fmt.fixed(float(passed_s), 1)} s of {fmt.fixed(float(all_s), 1)} s{faster}"
 
     def _show_map(self) -> None:
         answer = self.map
