@@ -10,7 +10,6 @@ import gc
 import shlex
 import sys
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -53,7 +52,6 @@ from designer.resources import example_names
 
 if TYPE_CHECKING:
     from designer.diagnosis.result import Diagnosis
-    from designer.plugins.find import Plugins
 
 
 class Commands(HelpedCommands):
@@ -356,13 +354,7 @@ def explore(
         raise MissingLibraryError(missing)
     from designer.explore.desktop.app import run
 
-    @cache
-    def plugins() -> Plugins:
-        from designer.plugins.find import find_plugins
-
-        return find_plugins(with_plugins=not no_plugins)
-
-    raise typer.Exit(run(config, screenshot, plugins))
+    raise typer.Exit(run(config, screenshot, with_plugins=not no_plugins))
 
 
 @app.command()

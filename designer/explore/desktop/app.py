@@ -5,18 +5,13 @@ from __future__ import annotations
 import signal
 import socket
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSocketNotifier, QTimer
 from PySide6.QtWidgets import QApplication
 
 from designer.explore.desktop.settings import Settings
 from designer.explore.desktop.window import Window
-
-if TYPE_CHECKING:
-    from designer.plugins.find import Plugins
 
 _LONGEST_S = 300
 """Room for kernels that are compiled first and a large map, on a machine with other work."""
@@ -37,7 +32,8 @@ def application() -> QApplication:
 def run(
     config: Path | None,
     screenshot: Path | None,
-    plugins: Callable[[], Plugins],
+    *,
+    with_plugins: bool = True,
     settings: Settings | None = None,
 ) -> int:
     """Open the window, on a study if there is one; return the exit status.
@@ -45,7 +41,7 @@ def run(
     With ``screenshot``, save a picture of the window once everything is answered, and close it.
     """
     app = application()
-    window = Window(plugins, settings or Settings())
+    window = Window(settings or Settings(), with_plugins=with_plugins)
     end = _EndOnSignal(window)
     window.show()
     if config is not None:

@@ -6,6 +6,7 @@ What is not saved is asked about, never lost.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -57,10 +58,10 @@ class Files(QObject):
         What the dialogs stand before.
     live : LiveSession
         The open study.
-    plugins : callable
-        Finds what studies are read with; called when one is opened.
     settings : Settings
         Where studies that were open are remembered.
+    with_plugins : bool
+        Whether studies are read with plugins of others; they are looked for with the first study.
     """
 
     notice = Signal(str, tuple)
@@ -71,15 +72,11 @@ class Files(QObject):
     """A study could not be opened, and may be gone."""
 
     def __init__(
-        self,
-        parent: QWidget,
-        live: LiveSession,
-        plugins: Callable[[], Plugins],
-        settings: Settings,
+        self, parent: QWidget, live: LiveSession, settings: Settings, *, with_plugins: bool
     ) -> None:
         super().__init__(parent)
         self._parent, self._live = parent, live
-        self._plugins, self._settings = plugins, settings
+        self._settings, self._with_plugins = settings, with_plugins
         self._disk = "same"
         self._written: tuple[Path, ...] = ()
         self._optimised: OptimisedStudy | None = None
@@ -88,6 +85,12 @@ class Files(QObject):
         self.watch.start()
         live.listen(self._show_written, "export", "sweep")
         live.listen(self._show_optimised, "optimise")
+
+    @cached_property
+    def _plugins(self) -> Plugins:
+        from designer.plugins.find import find_plugins
+
+        return find_plugins(self._with_plugins)
 
     # Studies
 
@@ -121,7 +124,7 @@ class Files(QObject):
         self.opening.emit(path.stem)
         from designer.explore.session import Session
 
-        if not self._succeeds(lambda: opened.append(Session.open(path, self._plugins())), _TITLE):
+        if not self._succeeds(lambda: opened.append(Session.open(path, self._plugins)), _TITLE):
             self.not_opened.emit()
             return
         if opened[0].file is not None:

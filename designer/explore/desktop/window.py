@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt
@@ -31,7 +30,6 @@ from designer.explore.desktop.widgets import fill, named
 
 if TYPE_CHECKING:
     from designer.explore.question import Long
-    from designer.plugins.find import Plugins
 
 _HINT_MS = 20_000
 """The hint stays longer than a message: a newcomer looks at the scene first."""
@@ -51,11 +49,11 @@ _BELOW_SHARE = 0.36
 class Window(QMainWindow):
     """Everything that stands in the window; `LiveSession` holds the study and the answers."""
 
-    def __init__(self, plugins: Callable[[], Plugins], settings: Settings) -> None:
+    def __init__(self, settings: Settings, *, with_plugins: bool = True) -> None:
         super().__init__()
         self.setObjectName("window")
         self.settings, self.live = settings, LiveSession()
-        self.files = Files(self, self.live, plugins, settings)
+        self.files = Files(self, self.live, settings, with_plugins=with_plugins)
         self.start, self.messages = StartPage(settings), _messages()
         self.pages = QStackedWidget()
         self.pages.addWidget(self.start)

@@ -36,7 +36,7 @@ from designer.explore.desktop.settings import Settings
 from designer.explore.desktop.window import Window
 from pathlib import Path
 app = application()
-window = Window(lambda: None, Settings(Path(sys.argv[1])))
+window = Window(Settings(Path(sys.argv[1])))
 window.show()
 app.processEvents()
 assert window.start.isVisible()
