@@ -5,6 +5,7 @@
     DesignerError
     ├── InputError          the user's files or arguments are wrong (exit status 2)
     ├── OutputError         the results cannot be written where asked (exit status 2)
+    ├── NothingToExportError no cables or ropes serve the study (exit status 1)
     ├── MissingLibraryError the machine lacks what draws in space (exit status 2)
     └── EffectError         an effect that a plugin brought in fails at work (exit status 2)
 """
@@ -87,6 +88,10 @@ class InputError(DesignerError):
 
 class OutputError(DesignerError):
     """The output folder cannot be used."""
+
+
+class NothingToExportError(DesignerError):
+    """The study has not come to the cables or ropes that a format needs."""
 
 
 class MissingLibraryError(DesignerError):

@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from designer.documents.plain import csv_text
-from designer.errors import DesignerError, Fault, InputError, OutputError
+from designer.errors import Fault, InputError, NothingToExportError, OutputError
 from designer.explore.here import CableHere, here
 from designer.explore.map import MapAnswer, map_answer
 from designer.explore.question import Question
@@ -125,7 +125,7 @@ def _lengths(question: Question, reporter: Reporter, target: Path, poses: Path |
     analysis = Analysis.begin(study, question.catalogue, reporter=reporter)
     lengths = lengths_of(analysis, turned, in_motion=in_motion)
     if lengths is None:
-        raise DesignerError("No rope serves this study, so there are no lengths.")
+        raise NothingToExportError("No rope serves this study, so there are no lengths")
     write_file(target, lengths.to_csv(table.names, table.values))
     left_out = (f"{poses}: column {name} holds texts: left out" for name in table.left_out)
     said = (*left_out, *lengths.remarks(), *scope_of_lengths(study, in_motion=in_motion))
@@ -134,21 +134,9 @@ def _lengths(question: Question, reporter: Reporter, target: Path, poses: Path |
 
 def _for_program(question: Question, reporter: Reporter, name: str, target: Path) -> Written:
     """Write the study for another program, as `designer export` does."""
-    from designer.export.formats import FORMATS
-    from designer.export.robot import ExportedRobot
+    from designer.export.formats import export_study
 
-    kind = FORMATS[name]
-    if not target.name.endswith(kind.ending):
-        raise OutputError(f"{target} is no file of {name}: its name ends in {kind.ending}")
-    with output_folder(target.parent) as building:
-        study, catalogue = question.study, question.catalogue
-        exported = ExportedRobot.of(study, catalogue, reporter, with_maps=kind.needs_maps)
-        refusal = kind.refusal(exported)
-        if refusal:
-            raise DesignerError(f"{refusal}.")
-        made = kind.write(exported, target.name.removesuffix(kind.ending))
-        for file, content in made.files.items():
-            (building / file).write_bytes(content)
+    made = export_study(name, target, question.study, question.catalogue, reporter)
     lost = tuple(f"Not in it: {line}" for line in made.lost)
     return Written(tuple(target.parent / file for file in made.files), lost)
 

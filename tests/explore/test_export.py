@@ -121,7 +121,7 @@ def test_formats_are_those_of_the_command(
     assert made.files[0] == tmp_path / target
     assert {file.name: file.read_bytes() for file in made.files} == dict(own.files)
     assert made.remarks == tuple(f"Not in it: {line}" for line in own.lost)
-    with pytest.raises(OutputError, match=FORMATS[name].ending):
+    with pytest.raises(InputError, match=FORMATS[name].ending):
         export(question, SILENT, content=name, target=tmp_path / "rig.odd")  # type: ignore[arg-type]
 
 

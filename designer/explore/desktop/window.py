@@ -99,8 +99,8 @@ class Window(QMainWindow):
         self.measured.rows_wanted.connect(self.work.want_rows)
         self.here.modes.moves_in_scene.connect(self.work.play_mode)
         live.taken_over.connect(self.docks["Compare"].raise_)
-        self._show_page(self.start)
         self.restoreState(self.settings.bytes_of("layout"))
+        self._show_page(self.start)
         self.work.follow_theme()
 
     def _put_docks(self, *panels: QWidget) -> None:

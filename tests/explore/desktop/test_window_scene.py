@@ -267,6 +267,16 @@ def test_an_exit_point_takes_the_coordinate_of_another(yard: Driver) -> None:
     yard.rest()
 
 
+def test_ctrl_leaves_an_exit_point_between_the_lines_of_the_grid(yard: Driver) -> None:
+    step = yard.scene.step_m
+    drag_exit_point(yard, 0, QPoint(11, -7), keys=Qt.KeyboardModifier.ControlModifier)
+    yard.rest()
+    x, y, _ = yard.session.study.robot.exit_points_m[0] / step
+    assert abs(x - round(x)) > 0.01 or abs(y - round(y)) > 0.01
+    yard.keys("Ctrl+Z")
+    yard.rest()
+
+
 def test_the_arrow_of_an_exit_point_lifts_it(yard: Driver) -> None:
     before = yard.session.study.robot.exit_points_m.copy()
     at = yard.pixel(before[2])
