@@ -289,12 +289,11 @@ class WorkPage(QWidget):
 
         size_m = float(np.linalg.norm(np.ptp(self.scene.stage.bounds_m, axis=0)))
         shift, turn = mode[:3], mode[3:]
-        least = 1e-12  # of what does not move
-        scale = min(
-            _MODE_SHARE * size_m / max(float(np.linalg.norm(shift)), least),
-            _MODE_RAD / max(float(np.linalg.norm(turn)), least),
+        farthest = max(
+            float(np.linalg.norm(shift)) / (_MODE_SHARE * size_m),
+            float(np.linalg.norm(turn)) / _MODE_RAD,
         )
-        scale *= math.cos(2.0 * math.pi * time.monotonic() / PERIOD_S)
+        scale = math.cos(2.0 * math.pi * time.monotonic() / PERIOD_S) / farthest
         place = self._place.copy()
         place[:3] += scale * shift
         if len(turn):
