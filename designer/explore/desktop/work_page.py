@@ -276,12 +276,11 @@ class WorkPage(QWidget):
             time_s = motion.time_s - motion.time_s[0]
             pace = max(float(time_s[-1]) / _LONGEST_S, 1.0)
             number = int(np.searchsorted(time_s, (time.monotonic() - self._play_start_s) * pace))
-            if number == len(time_s):
-                self.plays_path.setChecked(False)
-                return
+            is_over, number = number >= len(time_s) - 1, min(number, len(time_s) - 1)
             faster = f", {fmt.number(pace, 2)} times as fast" if pace > 1.0 else ""
             self._path_note = f"path: {time_s[number]:.1f} s of {time_s[-1]:.1f} s{faster}"
             self._live.move(motion.places[number], True)
+            self.plays_path.setChecked(not is_over)
 
     def _deflected(self, mode: FloatArray) -> FloatArray:
         """Where the platform is in a mode at this time, drawn far larger than it is."""
