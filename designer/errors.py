@@ -6,6 +6,7 @@
     ├── InputError          the user's files or arguments are wrong (exit status 2)
     │   └── WrongValueError      a value made in Python is wrong; also a ValueError
     ├── OutputError         the results cannot be written where asked (exit status 2)
+    ├── NothingToExportError no cables or ropes serve the study (exit status 1)
     ├── MissingLibraryError the machine lacks what draws in space (exit status 2)
     └── EffectError         an effect that a plugin brought in fails at work (exit status 2)
 """
@@ -97,6 +98,10 @@ class WrongValueError(InputError, ValueError):
 
 class OutputError(DesignerError):
     """The output folder cannot be used."""
+
+
+class NothingToExportError(DesignerError):
+    """The study has not come to the cables or ropes that a format needs."""
 
 
 class MissingLibraryError(DesignerError):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,10 +18,13 @@ from designer.progress import Advance
 from designer.selection.qualities import DesignCable
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.rest import find_equilibria, spread_poses
+from designer.study import Study, declared_settings
 
 _STARTS, _ROWS_AT_ONCE = 48, 16
 _FULL = 1.0 + 1e-9
 """Utilisation where a cable was made for a pose, with what rounding adds."""
+_MOST_ROWS = 12
+"""Rows that are named one by one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -57,6 +60,16 @@ class Lengths(checked.Shown):
         """Longest less shortest unstrained length of each cable (n_cables,) [m]."""
         length = self.statics.length_m[self.statics.is_solved]
         return np.ptp(length, axis=0) if len(length) else np.full(length.shape[1], np.nan)
+
+    def remarks(self) -> Iterator[str]:
+        """Yield which poses are not held, beyond the allowable tension, or outside the region."""
+        is_solved = self.statics.is_solved
+        beyond = is_solved & ~self.holds
+        yield from named_rows(~is_solved, "not held, see the verdict")
+        if beyond.any():
+            used = f"{self.utilisation[beyond].max():.1%}"
+            yield from named_rows(beyond, f"beyond the allowable tension, up to {used} of it")
+        yield from named_rows(self.outside, "outside the region that the study asks for")
 
     def to_csv(self, names: Sequence[str], values: FloatArray) -> str:
         """Return a table with the given columns (n_poses, n_names) first.
@@ -187,3 +200,24 @@ def lengths_of(analysis: Analysis, poses: Poses, *, in_motion: bool = False) -> 
     if workspace is not None and not workspace.region.is_discrete:
         outside = ~workspace.region.contains(poses.position_m)
     return Lengths(cable, solve_sagging(robot, poses, cable.cable), outside)
+
+
+def scope_of_lengths(study: Study, *, in_motion: bool) -> Iterator[str]:
+    """Yield what of a study is not in such lengths, a sentence each."""
+    if study.load_cases:
+        state = "in motion" if in_motion else "at rest"
+        yield f"These are of the platform {state}, without the load cases of the study."
+    unseen = [s.effect.key for s in declared_settings(study) if not s.effect.reaches_design]
+    if unseen:
+        yield (
+            f"Lengths of the ropes themselves, at poses in the robot's frame: {', '.join(unseen)} "
+            "of the study's effects do not reach a design, and are not in them."
+        )
+
+
+def named_rows(which: BoolArray, fault: str, what: str = "poses") -> Iterator[str]:
+    """Yield how many rows have a fault, and the first of them by number; nothing where none has."""
+    rows = [row for row, is_affected in enumerate(which, start=1) if is_affected]
+    if rows:
+        named = ", ".join(map(str, rows[:_MOST_ROWS])) + " …" * (len(rows) > _MOST_ROWS)
+        yield f"{len(rows)} of {len(which)} {what} {fault}: row {named}"

@@ -360,21 +360,18 @@ def explore(
     Exit status 0: the window was closed. 2: no window can be opened, or the file cannot be read.
     """
     from designer.explore.desktop.display import begin_probe, why_no_library, why_no_window
-    from designer.plugins.find import find_plugins
 
     missing = why_no_library()
     if missing:
         raise MissingLibraryError(missing)
     if config is not None and not config.is_file():
         raise InputError.at(config, "there is no such file", "a study")
-    probe = begin_probe()
-    plugins = find_plugins(with_plugins=not no_plugins)
-    missing = why_no_window(probe)
+    missing = why_no_window(begin_probe())
     if missing:
         raise MissingLibraryError(missing)
     from designer.explore.desktop.app import run
 
-    raise typer.Exit(run(config, screenshot, plugins))
+    raise typer.Exit(run(config, screenshot, with_plugins=not no_plugins))
 
 
 @app.command()

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from designer.cli.options import Config, NoPlugins, catalogue_of, output_option, study_of
-from designer.errors import InputError
+from designer.errors import NothingToExportError
 
 
 class Target(StrEnum):
@@ -54,30 +54,18 @@ def export(
     wrong or the format cannot hold such a robot, and nothing is written.
     """
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
-    from designer.exports.formats import FORMATS
-    from designer.io.output import output_folder, require_file
+    from designer.exports.formats import FORMATS, export_study
 
     study, plugins = study_of(config, no_plugins)
     catalogue = catalogue_of(study, plugins)
-    kind = FORMATS[to.value]
-    path = output or Path(f"{config.stem}{kind.ending}")
-    if not path.name.endswith(kind.ending):
-        expected = f"a name that ends in {kind.ending}"
-        raise InputError.at("--output", f"{path} is no file of {to.value}", expected)
+    path = output or Path(f"{config.stem}{FORMATS[to.value].ending}")
     announce_compiling()
-
-    from designer.exports.robot import ExportedRobot
-
-    with output_folder(path.parent) as building, ProgressBars() as bars:
-        require_file(path)  # what is in the way shows before the work
-        exported = ExportedRobot.of(study, catalogue, bars, with_maps=kind.needs_maps)
-        why_not = kind.why_not(exported)
-        if why_not:
-            show(why_not)
-            return False
-        made = kind.write(exported, path.name.removesuffix(kind.ending))
-        for name, content in made.files.items():
-            (building / name).write_bytes(content)
+    try:
+        with ProgressBars() as bars:
+            made = export_study(to.value, path, study, catalogue, bars)
+    except NothingToExportError as reason:
+        show(f"{reason}: see designer report.")
+        return False
     for name in made.files:
         show(f"{path.parent / name} written", markup=False)
     print_left_out(f"Not in it: {line}" for line in made.lost)

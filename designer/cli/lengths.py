@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,10 +9,6 @@ from designer.cli.options import Config, NoPlugins, catalogue_of, option, output
 
 if TYPE_CHECKING:
     from designer.analysis.lengths import FoundPoses, Lengths
-    from designer.arrays import BoolArray
-
-_MOST_ROWS = 12
-"""Rows that are named one by one."""
 
 
 def lengths(
@@ -43,7 +38,6 @@ def lengths(
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
     from designer.io.output import require_file, write_file
     from designer.io.poses import along_path, poses_in, read_poses
-    from designer.study import declared_settings
 
     study, plugins = study_of(config, no_plugins)
     table = along_path(study) if poses is None else read_poses(poses, study.robot)
@@ -54,7 +48,7 @@ def lengths(
     announce_compiling(proves=True)
 
     from designer.analysis.analyse import Analysis
-    from designer.analysis.lengths import lengths_of
+    from designer.analysis.lengths import lengths_of, scope_of_lengths
 
     with ProgressBars() as bars:
         analysis = Analysis.begin(study, catalogue, reporter=bars)
@@ -65,16 +59,8 @@ def lengths(
     write_file(path, answer.to_csv(table.names, table.values))
     print_left_out(f"{poses}: column {name} holds texts: left out" for name in table.left_out)
     _print_lengths(answer, path)
-    if study.load_cases:
-        state = "in motion" if poses is None else "at rest"
-        show(f"These are of the platform {state}, without the load cases of the study.")
-    unseen = [s.effect.key for s in declared_settings(study) if not s.effect.reaches_design]
-    if unseen:
-        show(
-            f"Lengths of the ropes themselves, at poses in the robot's frame: {', '.join(unseen)} "
-            "of the study's effects do not reach a design, and are not in them.",
-            soft_wrap=True,
-        )
+    for line in scope_of_lengths(study, in_motion=poses is None):
+        show(line, soft_wrap=True)
     return bool(answer.holds.all())
 
 
@@ -130,6 +116,7 @@ def _print_poses(poses: FoundPoses, path: Path) -> bool:
     """Print how many poses were found, and the rows that are not plain; whether there are none."""
     import numpy as np
 
+    from designer.analysis.lengths import named_rows
     from designer.cli.tables import bad
     from designer.cli.terminal import show
 
@@ -139,10 +126,10 @@ def _print_poses(poses: FoundPoses, path: Path) -> bool:
     total, stable = len(poses.row), int(n_stable.sum())
     show(f"{total} poses found for {poses.n_rows} rows with {poses.cable.name}, {stable} stable.")
     remarks = [
-        *_rows(n_found == 0, "have no pose that was found", "rows"),
-        *_rows((n_found > 0) & (n_stable == 0), "have no stable pose", "rows"),
-        *_rows(n_stable > 1, "have several stable poses", "rows"),
-        *_rows(over, "have a stable pose beyond the allowable tension", "rows"),
+        *named_rows(n_found == 0, "have no pose that was found", "rows"),
+        *named_rows((n_found > 0) & (n_stable == 0), "have no stable pose", "rows"),
+        *named_rows(n_stable > 1, "have several stable poses", "rows"),
+        *named_rows(over, "have a stable pose beyond the allowable tension", "rows"),
     ]
     for line in remarks:
         show(bad(line), soft_wrap=True)
@@ -174,23 +161,6 @@ def _print_lengths(lengths: Lengths, path: Path) -> None:
         show(table)
         if np.isfinite(turns).any():
             show("Drum turns: in one layer on the drum that the rope's grade suggests.")
-    for line in _remarks(lengths):
+    for line in lengths.remarks():
         show(bad(line), soft_wrap=True)
     show(f"{path} written", markup=False)
-
-
-def _remarks(lengths: Lengths) -> Iterator[str]:
-    is_solved = lengths.statics.is_solved
-    beyond = is_solved & ~lengths.holds
-    yield from _rows(~is_solved, "not held, see the verdict")
-    if beyond.any():
-        used = f"{lengths.utilisation[beyond].max():.1%}"
-        yield from _rows(beyond, f"beyond the allowable tension, up to {used} of it")
-    yield from _rows(lengths.outside, "outside the region that the study asks for")
-
-
-def _rows(which: BoolArray, fault: str, what: str = "poses") -> Iterator[str]:
-    rows = [row for row, is_affected in enumerate(which, start=1) if is_affected]
-    if rows:
-        named = ", ".join(map(str, rows[:_MOST_ROWS])) + " …" * (len(rows) > _MOST_ROWS)
-        yield f"{len(rows)} of {len(which)} {what} {fault}: row {named}"

@@ -11,19 +11,20 @@ from typing import Any, Literal
 import numpy as np
 
 from designer.documents.plain import csv_text
-from designer.errors import Fault, InputError, OutputError
+from designer.errors import Fault, InputError, NothingToExportError, OutputError
 from designer.explore.here import CableHere, here
 from designer.explore.map import MapAnswer, map_answer
 from designer.explore.question import Question
 from designer.explore.reading import text_of
 from designer.explore.ropes import RopeRow, Ropes, quick_ropes
-from designer.io.output import file_names, output_folder
+from designer.io.output import file_names, output_folder, write_file
 from designer.progress import Reporter
 
-What = Literal["report", "picture", "tables", "vtk"]
-"""What can be exported; a picture is taken by the window itself."""
-Written = tuple[Path, ...]
-"""What was written; the first is the one to open."""
+What = Literal[
+    "report", "picture", "tables", "vtk", "lengths", "csv", "caspr", "moordyn", "mujoco", "gltf"
+]
+"""What can be exported; a picture is taken by the window itself, the last are formats of
+`designer export`."""
 COLUMNS = {
     "utilisation": "utilisation",
     "diameter": "diameter_m",
@@ -64,6 +65,14 @@ _ROPE_COLUMNS = {
 _ALL = frozenset(COLUMNS)
 
 
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What was written, the first file the one to open; and what a reader must know of it."""
+
+    files: tuple[Path, ...]
+    remarks: tuple[str, ...] = ()
+
+
 def export(
     question: Question,
     reporter: Reporter,
@@ -71,6 +80,7 @@ def export(
     content: What,
     target: Path,
     ropes: Ropes | None = None,
+    poses: Path | None = None,
 ) -> Written:
     """Write files, whole or not at all.
 
@@ -79,21 +89,56 @@ def export(
     content : str
         ``report``: what `designer report` writes, into the folder ``target``. ``tables``:
         ``cables.csv``, ``map.csv`` and ``ropes.csv`` into that folder. ``vtk``: the map into the
-        file ``target``, which ends in ``.vtu``.
+        file ``target``, which ends in ``.vtu``. ``lengths``: what `designer lengths` writes. Else
+        what `designer export` does.
     ropes : Ropes, optional
         For ``tables``: the ropes as they are shown.
+    poses : Path, optional
+        For ``lengths``: the table of poses; without it those along the path of the study.
 
     Raises
     ------
-    OutputError
-        If they cannot be written.
+    DesignerError
+        If they cannot be written, or there is nothing to write.
     """
     target = Path(target)
     if content == "report":
         return _report(question, reporter, target)
     if content == "tables":
         return _tables(question, target, ropes)
-    return _vtk(question, target)
+    if content == "vtk":
+        return _vtk(question, target)
+    if content == "lengths":
+        return _lengths(question, reporter, target, poses)
+    return _for_program(question, reporter, content, target)
+
+
+def _lengths(question: Question, reporter: Reporter, target: Path, poses: Path | None) -> Written:
+    """Write the unstrained lengths at poses, as `designer lengths` does."""
+    from designer.analysis.analyse import Analysis
+    from designer.analysis.lengths import lengths_of, scope_of_lengths
+    from designer.io.poses import along_path, poses_in, read_poses
+
+    study, in_motion = question.study, poses is None
+    table = along_path(study) if poses is None else read_poses(poses, study.robot)
+    turned = poses_in(study.workspace, table)
+    analysis = Analysis.begin(study, question.catalogue, reporter=reporter)
+    lengths = lengths_of(analysis, turned, in_motion=in_motion)
+    if lengths is None:
+        raise NothingToExportError("No rope serves this study, so there are no lengths")
+    write_file(target, lengths.to_csv(table.names, table.values))
+    left_out = (f"{poses}: column {name} holds texts: left out" for name in table.left_out)
+    said = (*left_out, *lengths.remarks(), *scope_of_lengths(study, in_motion=in_motion))
+    return Written((target,), said)
+
+
+def _for_program(question: Question, reporter: Reporter, name: str, target: Path) -> Written:
+    """Write the study for another program, as `designer export` does."""
+    from designer.exports.formats import export_study
+
+    made = export_study(name, target, question.study, question.catalogue, reporter)
+    lost = tuple(f"Not in it: {line}" for line in made.lost)
+    return Written(tuple(target.parent / file for file in made.files), lost)
 
 
 def _report(question: Question, reporter: Reporter, folder: Path) -> Written:
@@ -107,7 +152,7 @@ def _report(question: Question, reporter: Reporter, folder: Path) -> Written:
         analysis = analyse(question.study, question.catalogue, building, reporter)
         write_report_files(analysis, building, reporter=reporter)
         written = [name for name in REPORT_FILES if (building / name).exists()]
-    return tuple(folder / name for name in written)
+    return Written(tuple(folder / name for name in written))
 
 
 def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Written:
@@ -126,7 +171,7 @@ def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Written:
     with output_folder(folder) as building:
         for name, text in tables.items():
             (building / name).write_bytes(text.encode())
-    return tuple(folder / name for name in tables)
+    return Written(tuple(folder / name for name in tables))
 
 
 def map_columns(chart: MapAnswer) -> dict[str, Any]:
@@ -173,7 +218,7 @@ def _vtk(question: Question, target: Path) -> Written:
         pieces.append(piece, name)
     with output_folder(target.parent) as building:
         pieces.combine().save(building / target.name)
-    return (target,)
+    return Written((target,))
 
 
 # From the plans that the commands take
@@ -256,7 +301,7 @@ def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: P
         write_sweep(read_store(target), plan.stem, building)
         written = file_names(building)
     pages = sorted(written, key=lambda name: not name.endswith(".html"))
-    return (*(folder / name for name in pages), target)
+    return Written((*(folder / name for name in pages), target))
 
 
 def _require_study_of(question: Question, plan: Path, study: str) -> None:

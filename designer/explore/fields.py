@@ -95,8 +95,11 @@ class Field:
         """What it stands for, however it is written."""
         return self.text if self.kind == "choice" else self.value_SI
 
-    def text_of(self, value_SI: float) -> str:
-        """Return a value as text, in the unit that the present text has, of a few digits."""
+    def text_of(self, value_SI: float, *, exactly: bool = False) -> str:
+        """Return a value as text, in the unit that the present text has, of a few digits.
+
+        Or ``exactly``, but for what its last digits are rounded to by the unit.
+        """
         if self.kind == "count":
             return str(round(value_SI))
         unit = _unit_of(self.text)
@@ -108,7 +111,7 @@ class Field:
         span = abs(self.high - self.low) if self.high is not None and self.low is not None else 0.0
         size = abs(span / per_unit) if not self.is_log and span else abs(shown)
         places = _ROUND - math.floor(math.log10(size)) if size > 0.0 else 0
-        number = f"{round(shown, places) + 0.0:.12g}"
+        number = f"{(shown if exactly else round(shown, places)) + 0.0:.12g}"
         return f"{number} {unit}" if unit else number
 
 

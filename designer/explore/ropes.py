@@ -208,6 +208,13 @@ def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes:
     )
 
 
+def asked_alone(question: Question) -> Ropes:
+    """Answer a study that asks for no rope; no rows."""
+    analysis = Analysis.begin(question.study, question.catalogue)
+    requirements, answer = analysis.requirements, analysis.answer
+    return Ropes((), None, "", is_final=True, requirements=requirements, answer=answer)
+
+
 def ropes_of(selection: SelectionResult, groups: GroupChoice | None = None) -> Ropes:
     """Return the rows of a selection that was made in full."""
     chosen = selection.chosen

@@ -31,6 +31,8 @@ from designer.resources import example_file, example_names
 from designer.study import Study
 
 OnDisk = Literal["same", "changed", "gone", "never saved"]
+_DIGITS = 6
+"""Of metres: a drag sets no finer ones."""
 _MOST_STEPS = 1000
 """Some hours of edits; each holds a text and what was read of it."""
 
@@ -253,6 +255,24 @@ class Session:
         reading = self._context.read(edits.with_value(live.text, ("pose",), value))
         if reading.study is not None:
             self._take("Keep the pose", None, reading, moves=True)
+        return reading.faults
+
+    def move_exit_point(self, number: int, position_m: FloatArray) -> tuple[Fault, ...]:
+        """Take an exit point, counted from 0, to (3,) [m], on its way as one step until `settle`.
+
+        Return what is wrong with that, nothing if taken. Coordinates that stay keep their text.
+        """
+        fields = [self.state.live.by_path[f"robot.anchors[{number}][{axis}]"] for axis in range(3)]
+        entries = {
+            field.path: field.text_of(value, exactly=True)
+            for field, value in zip(fields, np.round(position_m, _DIGITS).tolist(), strict=True)
+            if field.value_SI is None or abs(value - field.value_SI) > 10.0**-_DIGITS
+        }
+        if not entries:
+            return ()
+        reading = self._with_entries(entries)
+        if reading.study is not None:
+            self._take(f"Move exit point {number + 1}", ("exit point", number), reading)
         return reading.faults
 
     def choose(self, rope: Rope | RopePerCable | None) -> None:

@@ -26,7 +26,7 @@ from designer.explore.question import (
     ThrottledReporter,
     failure_text,
 )
-from designer.explore.ropes import quick_ropes
+from designer.explore.ropes import asked_alone, quick_ropes
 from designer.progress import interrupted_by
 
 Deliver = Callable[[Message], None]
@@ -177,6 +177,7 @@ class Worker:
             "fine": lambda: map_answer(question, fine=True, **options),
             "ropes": lambda: quick_ropes(question),
             "residuals": lambda: residuals(question),
+            "requirements": lambda: asked_alone(question),
             "worst": lambda: worst_answer(question, ThrottledReporter(report)),
         }
         return answers[request.kind]()

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
+from designer.errors import InputError, NothingToExportError
 from designer.exports.caspr import to_caspr
 from designer.exports.gltf import to_gltf
 from designer.exports.moordyn import to_moordyn
 from designer.exports.mujoco import to_mujoco
 from designer.exports.robot import Export, ExportedRobot
 from designer.exports.workshop import to_csv
+from designer.grades.registry import Catalogue
+from designer.io.output import output_folder, require_file
+from designer.progress import Reporter
+from designer.study import Study
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,3 +57,34 @@ FORMATS = {
     "gltf": Format(to_gltf, ".glb", needs_maps=True),
     "csv": Format(to_csv, ".csv", needs_ropes=True),
 }
+
+
+def export_study(
+    name: str, path: Path, study: Study, catalogue: Catalogue, reporter: Reporter
+) -> Export:
+    """Write a study for another program, into a file and what belongs beside it.
+
+    Raises
+    ------
+    InputError
+        If the file's name does not end as the format's do, or it cannot hold such a robot.
+    NothingToExportError
+        If no cable or rope serves the study.
+    OutputError
+        If a file cannot be written.
+    """
+    kind = FORMATS[name]
+    if not path.name.endswith(kind.ending):
+        expected = f"a name that ends in {kind.ending}"
+        raise InputError.at("--output", f"{path} is no file of {name}", expected)
+    with output_folder(path.parent) as building:
+        require_file(path)  # what is in the way shows before the work
+        exported = ExportedRobot.of(study, catalogue, reporter, with_maps=kind.needs_maps)
+        if kind.needs_ropes and not exported.has_ropes():
+            raise NothingToExportError("No rope serves this study, so there is nothing to cut")
+        if kind.needs_cables and exported.design is None:
+            raise NothingToExportError("No cable serves this study, so there is nothing to write")
+        made = kind.write(exported, path.name.removesuffix(kind.ending))
+        for file, content in made.files.items():
+            (building / file).write_bytes(content)
+    return made

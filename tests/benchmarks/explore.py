@@ -141,7 +141,7 @@ def _shown_s(name: str, maps: Sequence[MapAnswer]) -> tuple[float, float]:
 
     application()
     with TemporaryDirectory() as folder:
-        window = Window(find_plugins(with_plugins=False), Settings(Path(folder) / "settings.ini"))
+        window = Window(Settings(Path(folder) / "settings.ini"), with_plugins=False)
         window.resize(1280, 800)
         window.show()
         window.files.open(example_file(name))

@@ -16,7 +16,6 @@ from PySide6.QtWidgets import QApplication
 from designer.explore.desktop.app import application
 from designer.explore.desktop.settings import Settings
 from designer.explore.desktop.window import Window
-from designer.plugins.find import find_plugins
 from designer.resources import example_file, example_names
 
 PICTURES = example_file("fast").parent / "pictures"
@@ -27,7 +26,7 @@ def opened(name: str, theme: str) -> Window:
     """A window on a shipped study, everything answered and drawn."""
     settings = Settings(Path(mkdtemp()) / "settings.ini")
     settings.theme = theme
-    window = Window(find_plugins(with_plugins=False), settings)
+    window = Window(settings, with_plugins=False)
     window.show()
     window.files.open(example_file(name))
     rest(window)
@@ -84,7 +83,7 @@ def main() -> None:
     window.close()
     settings = Settings(Path(mkdtemp()) / "settings.ini")
     settings.theme = "light"
-    start = Window(find_plugins(with_plugins=False), settings)
+    start = Window(settings, with_plugins=False)
     start.show()
     rest(start)
     keep(start.grab(), "window-start")

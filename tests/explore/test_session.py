@@ -346,3 +346,20 @@ def test_turns_add_up_about_axes_of_the_frame_in_one_step(no_plugins: Plugins) -
     assert np.array_equal(session.state.place[:3], start[:3])
     session.undo()
     assert np.array_equal(session.state.place, start)
+
+
+def test_exit_point_keeps_units_and_is_one_step(yard: Session) -> None:
+    yard.edit("robot.anchors[0][0]", "250 mm")
+    text = yard.text
+    points = yard.study.robot.exit_points_m
+    for x_m in (0.4, 0.75):
+        assert yard.move_exit_point(0, [x_m, *points[0, 1:]]) == ()
+    yard.settle()
+    assert yard.state.live.by_path["robot.anchors[0][0]"].text == "750 mm"
+    assert yard.study.robot.exit_points_m[0].tolist() == [0.75, *points[0, 1:]]
+    assert yard.undo_label == "Move exit point 1"
+    yard.undo()
+    assert yard.text == text
+    faults = yard.move_exit_point(0, points[1])
+    assert "is the same point as" in faults[0].problem
+    assert yard.text == text

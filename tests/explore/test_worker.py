@@ -9,7 +9,7 @@ import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ from designer.explore import worker as worker_module
 from designer.explore.export import rope_table
 from designer.explore.helper import Helper
 from designer.explore.here import Here
-from designer.explore.question import Question, Request, Rope, failure_text
+from designer.explore.question import Long, Question, Quick, Request, Rope, failure_text
 from designer.explore.ropes import Ropes, full_ropes
 from designer.explore.session import Session
 from designer.model.robot import Poses
@@ -350,3 +350,9 @@ def test_a_process_at_work_ends_at_once(
     process.join(10.0)
     assert process.exitcode not in (None, 0)
     helper.close()
+
+
+def test_long_work_of_the_window_is_that_of_the_helper() -> None:
+    live_session = pytest.importorskip("designer.explore.desktop.live_session")
+    assert get_args(Long) == live_session.LONG
+    assert set(get_args(Quick)) | set(get_args(Long)) == set(live_session.NAMES)

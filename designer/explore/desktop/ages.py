@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import time
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from designer.explore.question import Question
+if TYPE_CHECKING:
+    from designer.explore.question import Question
 
 _OLD_MS = 200
 """A shorter time of an older state is no matter: answers come many times a second."""

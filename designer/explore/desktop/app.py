@@ -12,7 +12,6 @@ from PySide6.QtWidgets import QApplication
 
 from designer.explore.desktop.settings import Settings
 from designer.explore.desktop.window import Window
-from designer.plugins.find import Plugins
 
 _LONGEST_S = 300
 """Room for kernels that are compiled first and a large map, on a machine with other work."""
@@ -31,14 +30,18 @@ def application() -> QApplication:
 
 
 def run(
-    config: Path | None, screenshot: Path | None, plugins: Plugins, settings: Settings | None = None
+    config: Path | None,
+    screenshot: Path | None,
+    *,
+    with_plugins: bool = True,
+    settings: Settings | None = None,
 ) -> int:
     """Open the window, on a study if there is one; return the exit status.
 
     With ``screenshot``, save a picture of the window once everything is answered, and close it.
     """
     app = application()
-    window = Window(plugins, settings or Settings())
+    window = Window(settings or Settings(), with_plugins=with_plugins)
     end = _EndOnSignal(window)
     window.show()
     if config is not None:

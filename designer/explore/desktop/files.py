@@ -6,7 +6,9 @@ What is not saved is asked about, never lost.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
@@ -15,15 +17,18 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 from designer.errors import DesignerError
 from designer.explore.desktop.live_session import LONG, NAMES, LiveSession
 from designer.explore.desktop.settings import Settings
-from designer.explore.export import OptimisedStudy, What, Written
-from designer.explore.session import Session
-from designer.plugins.find import Plugins
 from designer.report import format as fmt
 from designer.resources import example_file
+
+if TYPE_CHECKING:
+    from designer.explore.export import OptimisedStudy, What, Written
+    from designer.explore.session import Session
+    from designer.plugins.find import Plugins
 
 _STUDIES = "Studies (*.yaml *.yml);;All files (*)"
 _ROBOTS = "Robots of CASPR and WireX (*.xml *.wcrfx);;All files (*)"
 _PLANS = "Plans (*.yaml *.yml);;All files (*)"
+_POSES = "Poses (*.csv);;All files (*)"
 _TITLE = "cdpr-designer"
 _STARTER = "fast"
 """The study that has a comment to every field."""
@@ -32,6 +37,12 @@ _EXPORTS: dict[What, tuple[str, str, str]] = {
     "picture": ("Picture of the scene", ".png", "Pictures (*.png)"),
     "tables": ("Folder for the tables", "-tables", ""),
     "vtk": ("The map for ParaView", "-map.vtu", "VTK grids (*.vtu)"),
+    "lengths": ("Lengths of the cables", "-lengths.csv", "Tables (*.csv)"),
+    "csv": ("Rows for the workshop", ".csv", "Tables (*.csv)"),
+    "caspr": ("Model of CASPR", "_bodies.xml", "Bodies of CASPR (*_bodies.xml)"),
+    "moordyn": ("Deck of MoorDyn", ".txt", "Decks of MoorDyn (*.txt)"),
+    "mujoco": ("Model of MuJoCo", ".xml", "Models of MuJoCo (*.xml)"),
+    "gltf": ("Scenes in space", ".glb", "glTF (*.glb)"),
 }
 """Of each export the title of the dialog, how the name ends, and kinds of files; none: a folder."""
 _DISK_MS = 2000
@@ -47,31 +58,39 @@ class Files(QObject):
         What the dialogs stand before.
     live : LiveSession
         The open study.
-    plugins : Plugins
-        What studies are read with.
     settings : Settings
         Where studies that were open are remembered.
+    with_plugins : bool
+        Whether studies are read with plugins of others; they are looked for with the first study.
     """
 
     notice = Signal(str, tuple)
     """A line that asks for attention, and the names of its buttons; no line for no text."""
+    opening = Signal(str)
+    """A study of this name is about to be opened."""
     not_opened = Signal()
     """A study could not be opened, and may be gone."""
 
     def __init__(
-        self, parent: QWidget, live: LiveSession, plugins: Plugins, settings: Settings
+        self, parent: QWidget, live: LiveSession, settings: Settings, *, with_plugins: bool
     ) -> None:
         super().__init__(parent)
         self._parent, self._live = parent, live
-        self._plugins, self._settings = plugins, settings
+        self._settings, self._with_plugins = settings, with_plugins
         self._disk = "same"
-        self._written: Written = ()
+        self._written: tuple[Path, ...] = ()
         self._optimised: OptimisedStudy | None = None
         self.watch = QTimer(self, interval=_DISK_MS)
         self.watch.timeout.connect(self.look_at_disk)
         self.watch.start()
         live.listen(self._show_written, "export", "sweep")
         live.listen(self._show_optimised, "optimise")
+
+    @cached_property
+    def _plugins(self) -> Plugins:
+        from designer.plugins.find import find_plugins
+
+        return find_plugins(self._with_plugins)
 
     # Studies
 
@@ -102,6 +121,9 @@ class Files(QObject):
         opened: list[Session] = []
         if not self.may_leave():
             return
+        self.opening.emit(path.stem)
+        from designer.explore.session import Session
+
         if not self._succeeds(lambda: opened.append(Session.open(path, self._plugins)), _TITLE):
             self.not_opened.emit()
             return
@@ -236,13 +258,13 @@ class Files(QObject):
 
     def optimise(self) -> None:
         """Ask for a plan, and search for a better design of the study."""
-        plan = self._asked_for_plan("Plan of an optimisation")
+        plan = self._asked_for("Plan of an optimisation", _PLANS)
         if plan is not None:
             self._live.begin_long("optimise", plan=plan)
 
     def sweep(self) -> None:
         """Ask for a plan and where its store is to be, and solve the study for all its values."""
-        plan = self._asked_for_plan("Plan of a sweep")
+        plan = self._asked_for("Plan of a sweep", _PLANS)
         if plan is None:
             return
         start, option = str(plan.with_suffix(".zarr").resolve()), QFileDialog.Option.ShowDirsOnly
@@ -251,12 +273,12 @@ class Files(QObject):
         if name:
             self._live.begin_long("sweep", plan=plan, target=Path(name))
 
-    def _asked_for_plan(self, title: str) -> Path | None:
+    def _asked_for(self, title: str, kinds: str) -> Path | None:
         session = self._live.session
         if session is None:
             return None
         start = str(session.path.resolve().parent)
-        name, _ = QFileDialog.getOpenFileName(self._parent, title, start, _PLANS)
+        name, _ = QFileDialog.getOpenFileName(self._parent, title, start, kinds)
         return Path(name) if name else None
 
     def _show_optimised(self, optimised: OptimisedStudy | None) -> None:
@@ -284,34 +306,49 @@ class Files(QObject):
 
     # Exports
 
-    def export(self, content: What, scene: QWidget) -> None:
-        """Ask where a report, tables, the map, or a picture of the scene is to be, and write it."""
-        session, (title, ending, kinds) = self._live.session, _EXPORTS[content]
-        if session is None:
-            return
-        folder = Path.cwd() if session.file is None else session.file.resolve().parent
-        start = str(folder / f"{session.path.stem}{ending}")
-        options = QFileDialog.Option(0) if kinds else QFileDialog.Option.ShowDirsOnly
-        name, _ = QFileDialog.getSaveFileName(self._parent, title, start, kinds, options=options)
-        if not name:
-            return
-        target = Path(name).with_suffix(Path(start).suffix) if kinds else Path(name)
-        if content == "picture":
+    def export_lengths(self) -> None:
+        """Ask for a table of poses and where their lengths are to be, and write them."""
+        poses = self._asked_for("Poses", _POSES)
+        if poses is not None:
+            self.export("lengths", poses=poses)
+
+    def export(self, content: What, **options: Path) -> None:
+        """Ask where a report, tables or a file are to be, and write them."""
+        target = self._asked_for_target(content)
+        if target is not None:
+            ropes = self._live.answers.get("ropes") if content == "tables" else None
+            self._live.begin_long("export", content=content, target=target, ropes=ropes, **options)
+
+    def save_picture(self, scene: QWidget) -> None:
+        """Ask where a picture of the scene is to be, and save it."""
+        target = self._asked_for_target("picture")
+        if target is not None:
             is_saved = scene.grab().save(str(target))
             said = f"Saved {target}" if is_saved else f"{target}: cannot be written"
             self._live.message.emit(said)
-            return
-        ropes = self._live.answers.get("ropes") if content == "tables" else None
-        self._live.begin_long("export", content=content, target=target, ropes=ropes)
 
-    def _show_written(self, files: Written | None) -> None:
+    def _asked_for_target(self, content: What) -> Path | None:
+        session, (title, ending, kinds) = self._live.session, _EXPORTS[content]
+        if session is None:
+            return None
+        folder = Path.cwd() if session.file is None else session.file.resolve().parent
+        start = str(folder / f"{session.path.stem}{ending}")
+        shown = QFileDialog.Option(0) if kinds else QFileDialog.Option.ShowDirsOnly
+        name, _ = QFileDialog.getSaveFileName(self._parent, title, start, kinds, options=shown)
+        target, needed = Path(name), kinds[kinds.find("*") + 1 : -1]
+        if not name.endswith(needed):
+            target = target.with_name(f"{target.stem}{needed}")
+        return target if name else None
+
+    def _show_written(self, written: Written | None) -> None:
         """Say what was written, and offer to open it."""
-        self._written = files or ()
-        if not files:
+        self._written = () if written is None else written.files
+        if written is None:
             self.notice.emit("", ())
             return
-        self._live.message.emit(f"Written: {', '.join(map(str, files))}")
-        main = files[0]
+        lines = f"Written: {', '.join(map(str, written.files))}", *written.remarks
+        self._live.message.emit("\n".join(lines))
+        main = written.files[0]
         self.notice.emit(f"{main.name} is in {main.parent}.", ("Open", "Close"))
 
 

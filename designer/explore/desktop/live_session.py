@@ -9,19 +9,22 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from typing import Any, get_args
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
 
 from designer.arrays import FloatArray
 from designer.errors import Fault
-from designer.explore.compare import Differences, Pin, compare
 from designer.explore.desktop.ages import Ages
-from designer.explore.question import Kind, Long, Message, Question, Rope, RopePerCable
-from designer.explore.session import Session
-from designer.explore.worker import Worker
-from designer.study import Study
+
+if TYPE_CHECKING:  # the start page does without, and is there the sooner
+    from designer.explore.compare import Differences, Pin
+    from designer.explore.question import Kind, Long, Message, Question, Rope, RopePerCable
+    from designer.explore.session import Session
+    from designer.explore.worker import Worker
+    from designer.study import Study
 
 _REST_MS = 250
 """A pause of the hand that is longer than those of a drag."""
@@ -29,9 +32,10 @@ _SHOWN_AS: dict[Kind, tuple[str, ...]] = {
     "coarse": ("map",),
     "fine": ("map",),
     "select": ("select", "ropes"),
+    "requirements": ("select",),
 }
 """What an answer is shown as, where that is not its kind."""
-LONG: tuple[Long, ...] = get_args(Long)
+LONG: tuple[Long, ...] = ("select", "diagnose", "export", "optimise", "sweep")
 """What takes long: with progress, and cancelled by hand."""
 NAMES: dict[str, str] = {
     "here": "the pose",
@@ -40,6 +44,7 @@ NAMES: dict[str, str] = {
     "worst": "the worst pose",
     "ropes": "the candidates",
     "select": "the full selection",
+    "requirements": "the requirements",
     "residuals": "the residuals",
     "diagnose": "the diagnosis",
     "export": "the export",
@@ -80,7 +85,6 @@ class LiveSession(QObject):
     def __init__(self) -> None:
         super().__init__()
         self._delivered.connect(self._take, Qt.ConnectionType.QueuedConnection)
-        self._worker = Worker(self._delivered.emit)
         self.session: Session | None = None
         self.question: Question | None = None
         self.answers: dict[str, Any] = {}
@@ -95,6 +99,12 @@ class LiveSession(QObject):
         self._rest.timeout.connect(self._ask_whole)
         self._ages = Ages()
         self._ages.changed.connect(self.busy_changed)
+
+    @cached_property
+    def _worker(self) -> Worker:
+        from designer.explore.worker import Worker
+
+        return Worker(self._delivered.emit)
 
     # What there is
 
@@ -111,7 +121,11 @@ class LiveSession(QObject):
     @property
     def pinned(self) -> Pin | None:
         """The state that the present one is compared with; None for nothing."""
-        pin = None if self.session is None else self.session.state.pin
+        if self.session is None:
+            return None
+        from designer.explore.compare import Pin
+
+        pin = self.session.state.pin
         return pin if isinstance(pin, Pin) else None
 
     @property
@@ -136,11 +150,15 @@ class LiveSession(QObject):
 
     def differences(self) -> Differences | None:
         """Return what is different from the pinned state; None where nothing is pinned."""
+        from designer.explore.compare import compare
+
         pin, present = self.pinned, self._present()
         return None if pin is None or present is None else compare(pin, present)
 
     def _present(self) -> Pin | None:
         """The present state with what is known of it."""
+        from designer.explore.compare import Pin
+
         question = None if self.session is None else self.session.question()
         if self.session is None or question is None:
             return None
@@ -175,7 +193,8 @@ class LiveSession(QObject):
         self._ages.forget()
         self._delivered.disconnect(self._take)
         self._since = sys.maxsize
-        self._worker.close()
+        if "_worker" in self.__dict__:
+            self._worker.close()
 
     # Steps of the session
 
@@ -217,6 +236,19 @@ class LiveSession(QObject):
             if not moving:
                 self.session.settle()
             self._follow_place(moving=moving)
+
+    def move_exit_point(self, number: int, position_m: FloatArray, moving: bool) -> None:
+        """Take an exit point, counted from 0, to (3,) [m], or on the way there."""
+        faults: list[Fault] = []
+        self.do(
+            lambda session: faults.extend(session.move_exit_point(number, position_m)),
+            moving=moving,
+        )
+        if moving:
+            return
+        self.do(lambda session: session.settle())
+        for fault in faults:
+            self.message.emit(str(fault))
 
     def shift(self, offset_m: FloatArray) -> None:
         """Move the platform by (3,) [m]; several shifts are one step to undo."""
@@ -347,6 +379,8 @@ class LiveSession(QObject):
             for kind in kinds:
                 self._ask(kind, self.question)
             self._ask("here", self.question, settled=True)
+            if self.question.study.selection is None:
+                self._ask("requirements", self.question)
             if self.question.study.measurements is not None:
                 self._ask("residuals", self.question)
 

@@ -20,13 +20,12 @@ from PySide6.QtWidgets import (
 
 from designer import __version__
 from designer.explore.desktop import theme as themes
-from designer.explore.export import What
 from designer.explore.quantities import QUANTITIES
-from designer.explore.session import Session
 from designer.resources import example_file, example_names
 
 if TYPE_CHECKING:
     from designer.explore.desktop.window import Window
+    from designer.explore.export import What
 
 _KEY = QKeySequence.StandardKey
 _VIEWS = (
@@ -40,7 +39,14 @@ _EXPORTS: tuple[tuple[str, What, str, str, str], ...] = (
     ("picture", "picture", "&Picture …", "Ctrl+Shift+P", "The scene as it is seen"),
     ("tables", "tables", "&Tables …", "Ctrl+Shift+T", "Cables, map and ropes as CSV"),
     ("map", "vtk", "&Map for ParaView …", "Ctrl+Shift+M", "The map as a VTK grid"),
+    ("path lengths", "lengths", "&Lengths along the path …", "", "Set-points for the winches"),
+    ("workshop", "csv", "&Workshop …", "", "Rows of ropes, lengths to cut and drums"),
+    ("CASPR", "caspr", "&CASPR …", "", "A model of CASPR"),
+    ("MoorDyn", "moordyn", "Moor&Dyn …", "", "A deck of MoorDyn, which MoorPy reads too"),
+    ("MuJoCo", "mujoco", "M&uJoCo …", "", "An MJCF model"),
+    ("glTF", "gltf", "&glTF …", "", "What the report draws in space"),
 )
+PANELS = ("Study", "Here", "Ropes", "Requirements", "Compare", "Measured data", "Messages")
 _THEMES = {"system": "As the system", "light": "Light", "dark": "Dark"}
 HINT = (
     "Drag the ring to move the platform, its arrow to lift it; click the map to go there; "
@@ -49,7 +55,15 @@ HINT = (
 KEYS = (
     ("Drag the ring around the platform", "moves it in its level (a planar robot in its plane)"),
     ("Drag the arrow above the ring", "lifts and lowers it"),
+    (
+        "Drag an exit point",
+        "moves it in its level, and edits the study; it takes the coordinates "
+        "of other exit points and of a grid, unless Ctrl is held",
+    ),
+    ("Click on an exit point", "gives it an arrow, which lifts and lowers it"),
     ("Click on the map", "takes the platform there"),
+    ("Ctrl + M", "measures the distance between two points that are clicked"),
+    ("Ctrl + P", "plays the path of the study"),
     ("Arrow keys", "move it along the axis of the frame that is nearest to that direction"),
     ("Page Up, Page Down", "lift and lower it"),
     ("Ctrl + these keys", "turn a platform that can turn, by one degree"),
@@ -149,9 +163,11 @@ class Menus:
             menu.addMenu("E&xport"),
             *(
                 Command(f"export {name}", text, keys, tip,
-                        partial(files.export, content, window.work.scene))
+                        partial(self._export, content))
                 for name, content, text, keys, tip in _EXPORTS
             ),
+            Command("export lengths", "Lengths at &poses …", "", "At the poses of a table",
+                    files.export_lengths),
         )  # fmt: skip
         self._add(
             menu,
@@ -169,9 +185,9 @@ class Menus:
         self._add(
             self._menu("&Edit", "edit menu"),
             Command("undo", "&Undo", "Ctrl+Z", "Take back the last step",
-                    partial(live.do, Session.undo), _KEY.Undo),
+                    lambda: live.do(lambda session: session.undo()), _KEY.Undo),
             Command("redo", "&Redo", "Ctrl+Shift+Z", "Do it again",
-                    partial(live.do, Session.redo), _KEY.Redo),
+                    lambda: live.do(lambda session: session.redo()), _KEY.Redo),
             None,
             Command("put all back", "&Put everything back", "",
                     "Make the whole study as the file has it", live.put_all_back),
@@ -187,7 +203,7 @@ class Menus:
         for quantity in QUANTITIES:
             self.quantities[quantity.key].setToolTip(quantity.definition)
         views = (
-            Command(f"look {view}", text, keys, tip, partial(window.work.look, view))
+            Command(f"look {view}", text, keys, tip, partial(self._look, view))
             for view, text, keys, tip in _VIEWS
         )
         self._add(menu, None, *views, None)
@@ -196,7 +212,7 @@ class Menus:
         options = [(name, _THEMES[name], "") for name in themes.CHOICES]
         self.themes = self._options(look, options, window.put_on)
         panels = menu.addMenu("&Panels")
-        for name in window.docks:
+        for name in PANELS:
             is_shown = name not in window.settings.hidden_panels
             action = QAction(name, window, checkable=True, checked=is_shown)
             action.setObjectName(f"panel {name}")
@@ -220,6 +236,15 @@ class Menus:
             Command("keep pose", "&Keep as the pose of the study", "Ctrl+K",
                     "Writes this place under `pose`", live.keep_pose),
         )  # fmt: skip
+
+    def _export(self, content: What) -> None:
+        if content == "picture":
+            self._window.files.save_picture(self._window.work.scene)
+        else:
+            self._window.files.export(content)
+
+    def _look(self, view: str) -> None:
+        self._window.work.look(view)
 
     def _add(self, menu: QMenu, *commands: Command | None) -> None:
         """Put commands into a menu; None is a line between them."""
@@ -286,6 +311,10 @@ class Menus:
             **dict.fromkeys(("keep pose", "pin", "optimise", "sweep"), at_work),
             "release": live.pinned is not None,
             **{f"export {name}": at_work for name, *_ in _EXPORTS},
+            "export lengths": at_work,
+            "export path lengths": at_work
+            and study is not None
+            and study.robot.platform.motion is not None,
             **{f"look {view}": at_work for view, *_ in _VIEWS},
         }
         for name, is_allowed in allowed.items():

@@ -6,7 +6,7 @@ import math
 import time
 
 import numpy as np
-from PySide6.QtCore import QLineF, Qt, QTimer
+from PySide6.QtCore import QLineF, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QHideEvent, QPainter, QPaintEvent, QPen, QShowEvent
 from PySide6.QtWidgets import QComboBox, QDialog, QVBoxLayout, QWidget
 
@@ -14,7 +14,7 @@ from designer.analysis.modes import PlatformModes
 from designer.arrays import FloatArray
 from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.theme import current
-from designer.explore.desktop.widgets import grey_when_old, named, result
+from designer.explore.desktop.widgets import check_box, grey_when_old, named, result
 from designer.explore.here import Here
 from designer.report import format as fmt
 from designer.report.figures.mode_shapes import HEIGHT, PERIOD_S, WIDTH, on_sheet
@@ -26,6 +26,9 @@ _NO_MOVES = np.empty((0, 0, 2, 2))
 class ModeWindow(QDialog):
     """Modes of the platform at this pose: one is chosen, and moves."""
 
+    moves_in_scene = Signal(object)
+    """The shape (3,) or (6,) of the mode that is to move in the scene as well, or None."""
+
     def __init__(self, live: LiveSession, parent: QWidget) -> None:
         super().__init__(parent)
         self.setObjectName("mode window")
@@ -35,8 +38,14 @@ class ModeWindow(QDialog):
         self.words = result("mode words", "muted")
         self.words.setWordWrap(True)
         self.view = ModeView()
+        self.in_scene = check_box(
+            "mode in scene",
+            "Move in the scene as well",
+            self._move_scene,
+            "Platform and cables move there, for as long as this window is open.",
+        )
         column = QVBoxLayout(self)
-        for part in (self.chosen, self.view, self.words):
+        for part in (self.chosen, self.view, self.in_scene, self.words):
             column.addWidget(part, int(part is self.view))
         self.chosen.currentIndexChanged.connect(self._choose)
         self._answer: Here | None = None
@@ -49,6 +58,19 @@ class ModeWindow(QDialog):
         """Show what was answered while it was not seen."""
         self._show_modes()
         super().showEvent(event)
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        """Let the scene rest."""
+        self.moves_in_scene.emit(None)
+        super().hideEvent(event)
+
+    def _move_scene(self) -> None:
+        modes, number = (
+            None if self._answer is None else self._answer.modes,
+            self.chosen.currentIndex(),
+        )
+        is_moving = self.in_scene.isChecked() and modes is not None and number >= 0
+        self.moves_in_scene.emit(modes.modes[number].shape if is_moving and modes else None)
 
     def _show_here(self, answer: Here | None) -> None:
         self._answer = answer
@@ -77,6 +99,7 @@ class ModeWindow(QDialog):
         number = self.chosen.currentIndex()
         move = self._moves[number] if 0 <= number < len(self._moves) else None
         self.view.show_motion(self._lines, move)
+        self._move_scene()
 
 
 class ModeView(QWidget):

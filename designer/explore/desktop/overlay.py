@@ -38,6 +38,8 @@ class Overlay(QWidget):
         self._view = view
         self.names: list[tuple[str, FloatArray]] = []
         self.platform_m: FloatArray | None = None
+        self.chosen_m: FloatArray | None = None  # The exit point that has a handle
+        self.rule_m: list[FloatArray] = []
         self.worst: tuple[FloatArray, str] | None = None
         self.is_worst_old = False
         self.pointed: tuple[QPointF, str] | None = None
@@ -48,13 +50,21 @@ class Overlay(QWidget):
         """All that is written."""
         marked = [self.worst[1]] if self.worst else []
         pointed = [self.pointed[1]] if self.pointed else []
-        return [*(name for name, _ in self.names), *marked, *pointed, *filter(None, [self.note])]
+        said = filter(None, [self.note, self.rule_text()])
+        return [*(name for name, _ in self.names), *marked, *pointed, *said]
 
-    def handle_px(self) -> tuple[FloatArray, FloatArray] | None:
-        """Return where the handle of the platform is, and the tip of its upward arrow [px]."""
-        if self.platform_m is None:
+    def rule_text(self) -> str:
+        """Return the distance between the ends of the rule, along the axes as well."""
+        if len(self.rule_m) < 2:
+            return ""
+        apart = self.rule_m[1] - self.rule_m[0]
+        return f"{fmt.fixed(float(np.linalg.norm(apart)), 3)} m\nΔ {fmt.position(apart)}"
+
+    def handle_px(self, place_m: FloatArray | None) -> tuple[FloatArray, FloatArray] | None:
+        """Return where the handle of a place is, and the tip of its upward arrow [px]."""
+        if place_m is None:
             return None
-        centre = self._view().pixels(self.platform_m)
+        centre = self._view().pixels(place_m)
         return centre, centre - np.array([0.0, ARROW_PX])
 
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -63,7 +73,9 @@ class Overlay(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._draw_names(painter)
         self._draw_worst(painter)
-        self._draw_handle(painter)
+        for place_m in (self.platform_m, self.chosen_m):
+            self._draw_handle(painter, place_m)
+        self._draw_rule(painter)
         if self.pointed is not None:
             place, text = self.pointed
             self._write_boxed(painter, place + QPointF(14, 18), text)
@@ -92,8 +104,20 @@ class Overlay(QWidget):
         painter.setPen(QColor(marked))
         self._write(painter, QPointF(x + 16, y - 8), text)
 
-    def _draw_handle(self, painter: QPainter) -> None:
-        handle = self.handle_px()
+    def _draw_rule(self, painter: QPainter) -> None:
+        ends = [QPointF(*self._view().pixels(end)) for end in self.rule_m]
+        for width, colour in ((4.5, theme.current().base), (1.8, theme.current().warning)):
+            painter.setPen(QPen(QColor(colour), width))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawPolyline(ends)
+            for end in ends:
+                painter.drawEllipse(end, 4, 4)
+        if len(ends) == 2:
+            lower = max(ends, key=lambda end: end.y())
+            self._write_boxed(painter, lower + QPointF(8, 8), self.rule_text())
+
+    def _draw_handle(self, painter: QPainter, place_m: FloatArray | None) -> None:
+        handle = self.handle_px(place_m)
         if handle is None:
             return
         centre, tip = QPointF(*handle[0]), QPointF(*handle[1])
@@ -118,7 +142,8 @@ class Overlay(QWidget):
         box = QRectF(painter.boundingRect(QRectF(0, 0, 460, 400), 0, text))
         box.moveTo(place)
         box.adjust(0, 0, 16, 10)
-        box.moveRight(min(box.right(), self.width() - 4))
+        box.moveRight(min(box.right(), self.width() - self.legend_px - 4))
+        box.moveLeft(max(box.left(), 4))
         box.moveBottom(min(box.bottom(), self.height() - 4))
         ground = QColor(theme.current().raised)
         ground.setAlpha(235)

@@ -89,7 +89,7 @@ class PanelRequirements(QWidget):
             "Evaluates all that the study asks for, as in the report.",
         )
         panel(self, "requirements", beside(self.answer, self.evaluate), self.table)
-        live.listen(self._show_requirements, "select")
+        live.listen(self._show_requirements, "select", "requirements")
         grey_when_old(live, {"select"}, self.answer, self.table)
 
     def _show_requirements(self, ropes: Ropes | None) -> None:

@@ -16,10 +16,11 @@ from PySide6.QtGui import QCloseEvent, QKeyEvent, QMouseEvent, QResizeEvent, QWh
 from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 
-from designer.arrays import FloatArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.explore.desktop import theme
 from designer.explore.desktop.overlay import ARROW_PX, HANDLE_PX, Legend, Overlay
-from designer.explore.desktop.scene_actors import SceneActors
+from designer.explore.desktop.scene_actors import NEAR_PX, SceneActors
+from designer.report import format as fmt
 from designer.report.figures.view import View
 
 _REST_MS = 300
@@ -41,6 +42,30 @@ _STEPS = {
 """To the right and away from the viewer, along the nearest axis of the frame, and upward."""
 _TURN_RAD = float(np.radians(1.0))
 """How far a key turns the platform."""
+_SNAP_PX = 8.0
+"""As near an exit point takes the coordinate of another."""
+_ALONG = 1e-9
+"""Of a normal, along an axis that lies in its plane."""
+
+
+def snapped(
+    position_m: FloatArray,
+    others_m: FloatArray,
+    step_m: float,
+    reach_m: float,
+    is_free: BoolArray,
+) -> tuple[FloatArray, IntArray]:
+    """Return a position (3,) as others (n, 3) have it, and which of them in each coordinate.
+
+    Those coordinates that are free (3,) become the nearest of the others within reach, else the
+    next on a grid of this step; -1 for no other [m].
+    """
+    away_m = np.abs(others_m - position_m)
+    nearest = away_m.argmin(axis=0)
+    is_alike = is_free & (away_m.min(axis=0) <= reach_m)
+    on_grid_m = np.where(is_free, step_m * np.round(position_m / step_m), position_m)
+    alike_m = others_m[nearest, np.arange(3)]
+    return np.where(is_alike, alike_m, on_grid_m), np.where(is_alike, nearest, -1)
 
 
 class SceneView(QtInteractor):
@@ -48,6 +73,8 @@ class SceneView(QtInteractor):
 
     asks_for_position = Signal(object, bool)
     """A position (3,) [m] that the platform is to take, and whether it is still on its way."""
+    asks_for_exit_point = Signal(int, object, bool)
+    """Which exit point, counted from 0, is to be where (3,) [m], and whether it is on its way."""
     asks_for_shift = Signal(object)
     """How far (3,) the platform is to be moved along the axes of the frame [m]."""
     asks_for_turn = Signal(object)
@@ -70,9 +97,13 @@ class SceneView(QtInteractor):
         self.colour_legend = Legend(self)
         self.can_turn = False
         self.is_turned = False  # Whether the user has chosen where to look from
+        self.is_measuring = False
+        self.chosen: int | None = None  # The exit point that has a handle
+        self.exit_points_m = np.empty((0, 3))
         self._pressed: QPoint | None = None
         self._last = QPoint()
         self._grip = ""
+        self._gripped: int | None = None  # The exit point that is dragged; None for the platform
         self._grip_offset = np.zeros(3)
         self._rest = QTimer(self, singleShot=True, interval=_REST_MS)
         self._rest.timeout.connect(self._draw_smooth)
@@ -137,25 +168,27 @@ class SceneView(QtInteractor):
         """Begin a drag of the platform or of the picture, or a click."""
         self.setFocus()
         self._pressed = self._last = event.position().toPoint()
-        self._grip = self._grip_at(event.position())
+        self._grip, self._gripped = self._grip_at(event.position())
         self.overlay.pointed = None
-        if self._grip and self.overlay.platform_m is not None:
+        if self._grip:
             under = self._dragged_to(event.position())
-            self._grip_offset = np.zeros(3) if under is None else self.overlay.platform_m - under
+            self._grip_offset = np.zeros(3) if under is None else self._gripped_m - under
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Drag, or tell what the mouse is over."""
         pixel = event.position().toPoint()
         if self._pressed is None:
             self._last = pixel
-            over = self._grip_at(event.position())
+            over = self._grip_at(event.position())[0]
+            if len(self.overlay.rule_m) and self.is_measuring and not self._has_measured:
+                self._measure(event.position(), is_end=False)
             self.setCursor(Qt.CursorShape.OpenHandCursor if over else Qt.CursorShape.CrossCursor)
             self._hover.start()
             return
         step, self._last = pixel - self._last, pixel
         buttons, modifiers = event.buttons(), event.modifiers()
         if self._grip:
-            self._drag_platform(event.position(), True)
+            self._drag(event, True)
         elif (
             buttons & Qt.MouseButton.LeftButton
             and not modifiers & Qt.KeyboardModifier.ShiftModifier
@@ -167,19 +200,61 @@ class SceneView(QtInteractor):
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """End a drag; where the mouse has hardly moved, take the platform to what is under it."""
         pressed, self._pressed = self._pressed, None
-        grip, self._grip = self._grip, ""
         if pressed is None:
             return
         moved = (event.position().toPoint() - pressed).manhattanLength()
-        if grip and moved > _CLICK_PX:
-            self._grip = grip
-            self._drag_platform(event.position(), False)
-            self._grip = ""
-        elif moved <= _CLICK_PX and event.button() == Qt.MouseButton.LeftButton and not grip:
-            hit = self._hit(event.position())
+        if moved > _CLICK_PX:
+            if self._grip:
+                self._drag(event, False)
+        elif event.button() == Qt.MouseButton.LeftButton:
+            self._click(event.position())
+        self._grip = ""
+        self._rest.start()
+
+    def _click(self, place: QPointF) -> None:
+        """Measure, choose an exit point, or take the platform to what is there."""
+        if self.is_measuring:
+            self._measure(place, is_end=True)
+        elif self._grip:
+            self.choose_exit_point(self._gripped)
+        else:
+            self.choose_exit_point(None)
+            hit = self._hit(place)
             if hit is not None:
                 self.asks_for_position.emit(hit.position_m, False)
-        self._rest.start()
+
+    # Exit points and distances
+
+    def show_exit_points(self, exit_points_m: FloatArray) -> None:
+        """Take where the exit points are (n_cables, 3) [m]."""
+        is_same_robot = len(exit_points_m) == len(self.exit_points_m)
+        self.exit_points_m = exit_points_m
+        self.choose_exit_point(self.chosen if is_same_robot else None)
+
+    def choose_exit_point(self, number: int | None) -> None:
+        """Give an exit point, counted from 0, a handle with an arrow; no point for None."""
+        self.chosen = number
+        self.overlay.chosen_m = None if number is None else self.exit_points_m[number]
+        self.overlay.update()
+
+    def measure(self, is_measuring: bool) -> None:
+        """Have clicks measure the distance between two points, or not any more."""
+        self.is_measuring, self._has_measured, self.overlay.rule_m = is_measuring, False, []
+        self.overlay.update()
+
+    def _measure(self, place: QPointF, *, is_end: bool) -> None:
+        """Lay an end of the rule onto a point of robot or map; it follows the mouse until then."""
+        platform = [] if self.overlay.platform_m is None else [self.overlay.platform_m]
+        points = np.array([*self.exit_points_m, *self.stage.attachments_m, *platform])
+        away = np.linalg.norm(self.view.pixels(points) - [place.x(), place.y()], axis=1)
+        is_point = bool(away.min() <= NEAR_PX)
+        hit = None if is_point else self._hit(place)
+        if hit is not None or is_point:
+            end_m = points[away.argmin()] if hit is None else hit.position_m
+            start = [] if self._has_measured else self.overlay.rule_m[:1]
+            self.overlay.rule_m = [*start, np.array(end_m)]
+            self._has_measured = is_end and bool(start)
+            self.overlay.update()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Zoom at the mouse."""
@@ -237,34 +312,70 @@ class SceneView(QtInteractor):
         level[2] = up
         return level
 
-    def _grip_at(self, place: QPointF) -> str:
-        """Which part of the platform's handle is there: ``level``, ``upright`` or none."""
-        handle = self.overlay.handle_px()
-        if handle is None:
-            return ""
-        pixel = np.array([place.x(), place.y()])
-        if np.linalg.norm(pixel - handle[0]) <= HANDLE_PX:
-            return "level"
-        across, down = pixel - handle[1]
-        return "upright" if abs(across) <= 8 and -6 <= down <= ARROW_PX - HANDLE_PX else ""
+    def _grip_at(self, place: QPointF) -> tuple[str, int | None]:
+        """Return what is gripped there, and of which exit point; None for the platform.
+
+        Of a handle ``level`` or ``upright``, of an exit point without one ``level``, else nothing.
+        """
+        pixel, overlay = np.array([place.x(), place.y()]), self.overlay
+        if self.is_measuring:
+            return "", None
+        for number, place_m in ((None, overlay.platform_m), (self.chosen, overlay.chosen_m)):
+            handle = overlay.handle_px(place_m)
+            if handle is None:
+                continue
+            if np.linalg.norm(pixel - handle[0]) <= HANDLE_PX:
+                return "level", number
+            across, down = pixel - handle[1]
+            if abs(across) <= 8 and -6 <= down <= ARROW_PX - HANDLE_PX:
+                return "upright", number
+        away = np.linalg.norm(self.view.pixels(self.exit_points_m) - pixel, axis=-1)
+        is_near = len(away) > 0 and away.min() <= NEAR_PX
+        return ("level", int(away.argmin())) if is_near else ("", None)
+
+    @property
+    def _gripped_m(self) -> FloatArray:
+        """Where what is gripped is (3,) [m]."""
+        if self._gripped is not None:
+            return np.asarray(self.exit_points_m[self._gripped])
+        assert self.overlay.platform_m is not None
+        return self.overlay.platform_m
 
     def _dragged_to(self, place: QPointF) -> FloatArray | None:
-        """Where in the platform's level, or on the vertical through it, the mouse is."""
-        platform, view = self.overlay.platform_m, self.view
-        assert platform is not None
-        if self._grip == "level" and not self.stage.is_planar:
-            return view.on_plane(place.x(), place.y(), platform, np.array([0.0, 0.0, 1.0]))
+        """Where in the level of what is gripped, or on the vertical through it, the mouse is."""
+        platform, view = self._gripped_m, self.view
         if self._grip == "level":
-            return view.on_plane(place.x(), place.y(), platform, self.stage.plane_normal)
+            return view.on_plane(place.x(), place.y(), platform, self.stage.level_normal)
         facing = np.append(view.toward_camera[:2], 0.0)
         facing = facing / max(float(np.linalg.norm(facing)), 1e-9)
         under = view.on_plane(place.x(), place.y(), platform, facing)
         return None if under is None else np.array([*platform[:2], under[2]])
 
-    def _drag_platform(self, place: QPointF, moving: bool) -> None:
-        under = self._dragged_to(place)
-        if under is not None:
-            self.asks_for_position.emit(under + self._grip_offset, moving)
+    def _drag(self, event: QMouseEvent, moving: bool) -> None:
+        """Take what is gripped along; an exit point snaps, unless Ctrl is held."""
+        under, number = self._dragged_to(event.position()), self._gripped
+        if under is None:
+            return
+        target_m = under + self._grip_offset
+        if number is None:
+            self.asks_for_position.emit(target_m, moving)
+            return
+        text = f"A{number + 1}"
+        if not event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+            others_m = np.delete(self.exit_points_m, number, axis=0)
+            is_free = np.array([False, False, True])
+            if self._grip == "level":
+                is_free = np.abs(self.stage.level_normal) < _ALONG
+            reach_m = _SNAP_PX / self.view.pixels_per_m
+            target_m, alike = snapped(target_m, others_m, self.step_m, reach_m, is_free)
+            names = (
+                f"{'xyz'[k]} as A{n + 1 + (n >= number)}" for k, n in enumerate(alike) if n >= 0
+            )
+            text = ", ".join([text, *names])
+        if self.chosen != number:
+            self.choose_exit_point(number)
+        self.asks_for_exit_point.emit(number, target_m, moving)
+        self.write_pointed(f"{text}\n{fmt.position(self.exit_points_m[number])}" if moving else "")
 
     # What the mouse is over
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from designer.explore.map import MapAnswer
     from designer.study import Study
 
-_NEAR_PX = 10.0
+NEAR_PX = 10.0
 """As far as a hand with a mouse misses a dot."""
 
 _BELOW = 5e-3
@@ -58,6 +58,12 @@ class SceneActors:
         self._faces = np.empty((0, 3), dtype=np.int64)
         self._edges = np.empty((0, 2), dtype=np.int64)
         self._points_m = np.empty((0, 3))
+        self.attachments_m = np.empty((0, 3))
+
+    @property
+    def level_normal(self) -> FloatArray:
+        """Of what is dragged in: the level, or the plane of a planar robot."""
+        return self.plane_normal if self.is_planar else np.array([0.0, 0.0, 1.0])
 
     @property
     def map_surfaces(self) -> tuple[MapSurface, MapSurface]:
@@ -108,13 +114,20 @@ class SceneActors:
     def put_place(
         self, study: Study, place: FloatArray, answer: Here | None, factor: float
     ) -> None:
-        """Show platform and cables; without an answer yet, the cables straight."""
+        """Show platform and cables; without an answer yet, the cables straight.
+
+        Where the answer is of a place beside this, each cable follows its attachment point.
+        """
         pose = Poses.at(place)
         ends = pose.attachment_points_m(study.robot)
         chords = np.stack([study.robot.exit_points_m, ends], axis=1)
         self.chords.put(chords)
         curves = None if answer is None else answer.curves_exaggerated_m(factor)
+        if curves is not None:
+            share = np.linspace(0.0, 1.0, curves.shape[1])[:, None]
+            curves = curves + share * (ends - curves[:, -1])[:, None]
         self.cables.put(chords if curves is None else curves)
+        self.attachments_m = ends
         if study.robot.is_point_mass or len(self._faces) == 0:
             self.body.put(np.empty((0, 3)), self._faces)
             self.edges.put([] if study.robot.is_point_mass else [ends])
@@ -155,7 +168,7 @@ class SceneActors:
         if len(self._points_m):
             away = np.linalg.norm(view.pixels(self._points_m) - pixel, axis=1)
             number = int(np.argmin(away))
-            is_near = away[number] <= _NEAR_PX
+            is_near = away[number] <= NEAR_PX
             return Hit(self._points_m[number], "points", number) if is_near else None
         hits = [
             hit

@@ -33,6 +33,8 @@ class StartPage(QScrollArea):
     """A study's file was chosen."""
     asks_for_file = Signal()
     """The user wants to look for a file."""
+    asks_for_new = Signal()
+    asks_to_import = Signal()
 
     def __init__(self, settings: Settings) -> None:
         super().__init__()
@@ -44,7 +46,7 @@ class StartPage(QScrollArea):
         columns.setContentsMargins(28, 24, 28, 24)
         columns.setSpacing(28)
         self._recent = QVBoxLayout()
-        columns.addLayout(self._recent, 1)
+        columns.addLayout(self._ways(), 1)
         columns.addLayout(self._shipped(), 4)
         self.setWidget(inside)
 
@@ -56,14 +58,6 @@ class StartPage(QScrollArea):
     def show_recent(self) -> None:
         """Show the studies that were open before."""
         emptied(self._recent)
-        sought = button("open", "Open a study …", self.asks_for_file.emit)
-        sought.setShortcut("Ctrl+O")
-        question = label("Which cable, how thick, and how sure is that?", "muted")
-        fill(self._recent, label("cdpr-designer", "title"), question)
-        self._recent.addSpacing(12)
-        self._recent.addWidget(sought)
-        self._recent.addSpacing(12)
-        self._recent.addWidget(label("Recent", "heading"))
         studies = self._settings.recent
         for path in studies:
             entry = _StudyButton(path.stem, str(path.parent))
@@ -72,7 +66,23 @@ class StartPage(QScrollArea):
             self._recent.addWidget(entry)
         if not studies:
             self._recent.addWidget(label("Studies that you open stand here.", "muted"))
-        self._recent.addStretch(1)
+
+    def _ways(self) -> QVBoxLayout:
+        """How to begin; the keys of that are those of the menu."""
+        column = QVBoxLayout()
+        column.setSpacing(8)
+        question = label("Which cable, how thick, and how sure is that?", "muted")
+        fill(column, label("cdpr-designer", "title"), question)
+        column.addSpacing(12)
+        ways = (
+            ("new study", "New study", self.asks_for_new, "A study with a comment to every field"),
+            ("open", "Open a study …", self.asks_for_file, "A study of yours"),
+            ("import", "Import a robot …", self.asks_to_import, "A robot of CASPR or WireX"),
+        )
+        fill(column, *(button(name, text, ask.emit, tip) for name, text, ask, tip in ways))
+        column.addSpacing(12)
+        fill(column, label("Recent", "heading"), self._recent, None)
+        return column
 
     def _shipped(self) -> QVBoxLayout:
         column = QVBoxLayout()

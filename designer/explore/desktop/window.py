@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QCloseEvent
 from PySide6.QtWidgets import (
@@ -21,20 +23,13 @@ from PySide6.QtWidgets import (
 from designer.explore.desktop import theme as themes
 from designer.explore.desktop.files import Files
 from designer.explore.desktop.live_session import LONG, NAMES, LiveSession
-from designer.explore.desktop.menus import HINT, Menus
-from designer.explore.desktop.panel_compare import PanelCompare
-from designer.explore.desktop.panel_here import PanelHere
-from designer.explore.desktop.panel_measured import PanelMeasured
-from designer.explore.desktop.panel_requirements import PanelRequirements
-from designer.explore.desktop.panel_ropes import PanelRopes
-from designer.explore.desktop.panel_study import PanelStudy
+from designer.explore.desktop.menus import HINT, PANELS, Menus
 from designer.explore.desktop.settings import Settings
 from designer.explore.desktop.start_page import StartPage
-from designer.explore.desktop.text_page import TextPage
 from designer.explore.desktop.widgets import fill, named
-from designer.explore.desktop.work_page import WorkPage
-from designer.explore.question import Long
-from designer.plugins.find import Plugins
+
+if TYPE_CHECKING:
+    from designer.explore.question import Long
 
 _HINT_MS = 20_000
 """The hint stays longer than a message: a newcomer looks at the scene first."""
@@ -54,22 +49,16 @@ _BELOW_SHARE = 0.36
 class Window(QMainWindow):
     """Everything that stands in the window; `LiveSession` holds the study and the answers."""
 
-    def __init__(self, plugins: Plugins, settings: Settings) -> None:
+    def __init__(self, settings: Settings, *, with_plugins: bool = True) -> None:
         super().__init__()
         self.setObjectName("window")
         self.settings, self.live = settings, LiveSession()
-        self.files = Files(self, self.live, plugins, settings)
-        self.start, self.work = StartPage(settings), WorkPage(self.live)
-        self.text = TextPage(self.live)
+        self.files = Files(self, self.live, settings, with_plugins=with_plugins)
+        self.start, self.messages = StartPage(settings), _messages()
         self.pages = QStackedWidget()
-        for page in (self.start, self.work, self.text):
-            self.pages.addWidget(page)
+        self.pages.addWidget(self.start)
         self.setCentralWidget(self.pages)
-        self.here, self.study_panel = PanelHere(self.live), PanelStudy(self.live)
-        self.ropes, self.requirements = PanelRopes(self.live), PanelRequirements(self.live)
-        self.compare, self.measured = PanelCompare(self.live), PanelMeasured(self.live)
-        self.messages = _messages()
-        self.docks = self._put_docks()
+        self.docks: dict[str, QDockWidget] = {}
         self.status = StatusBar(self.live)
         self.setStatusBar(self.status)
         self.menus = Menus(self)
@@ -77,19 +66,47 @@ class Window(QMainWindow):
         self._restore()
         self._show_page(self.start)
 
-    def _put_docks(self) -> dict[str, QDockWidget]:
+    def furnish(self) -> None:
+        """Make what a study is shown in, once: its libraries take longer than the start page."""
+        if self.docks:
+            return
+        from designer.explore.desktop.panel_compare import PanelCompare
+        from designer.explore.desktop.panel_here import PanelHere
+        from designer.explore.desktop.panel_measured import PanelMeasured
+        from designer.explore.desktop.panel_requirements import PanelRequirements
+        from designer.explore.desktop.panel_ropes import PanelRopes
+        from designer.explore.desktop.panel_study import PanelStudy
+        from designer.explore.desktop.text_page import TextPage
+        from designer.explore.desktop.work_page import WorkPage
+
+        live, files = self.live, self.files
+        self.work, self.text = WorkPage(live), TextPage(live)
+        for page in (self.work, self.text):
+            self.pages.addWidget(page)
+        self.study_panel, self.here, self.ropes = (
+            PanelStudy(live),
+            PanelHere(live),
+            PanelRopes(live),
+        )
+        self.requirements, self.compare = PanelRequirements(live), PanelCompare(live)
+        self.measured = PanelMeasured(live)
+        panels = (self.study_panel, self.here, self.ropes, self.requirements, self.compare)
+        self._put_docks(*panels, self.measured, self.messages)
+        files.notice.connect(self.work.show_notice)
+        self.work.notice_answered.connect(files.answer_notice)
+        self.text.asks_to_reload.connect(files.reload)
+        self.text.asks_to_leave.connect(self.show_work)
+        self.measured.rows_wanted.connect(self.work.want_rows)
+        self.here.modes.moves_in_scene.connect(self.work.play_mode)
+        live.taken_over.connect(self.docks["Compare"].raise_)
+        self.restoreState(self.settings.bytes_of("layout"))
+        self._show_page(self.start)
+        self.work.follow_theme()
+
+    def _put_docks(self, *panels: QWidget) -> None:
         """Put the panels around the scene; those below it share one place."""
-        panels = {
-            "Study": self.study_panel,
-            "Here": self.here,
-            "Ropes": self.ropes,
-            "Requirements": self.requirements,
-            "Compare": self.compare,
-            "Measured data": self.measured,
-            "Messages": self.messages,
-        }
-        docks = {}
-        for title, panel in panels.items():
+        docks = self.docks
+        for title, panel in zip(PANELS, panels, strict=True):
             dock = QDockWidget(title, self)
             dock.setObjectName(f"dock {title}")
             dock.setFeatures(dock.features() & ~QDockWidget.DockWidgetFeature.DockWidgetClosable)
@@ -101,7 +118,6 @@ class Window(QMainWindow):
         docks["Ropes"].raise_()
         self.setCorner(Qt.Corner.BottomLeftCorner, _AREAS["Study"])
         self.setCorner(Qt.Corner.BottomRightCorner, _BELOW)  # tables are wide
-        return docks
 
     def _connect(self) -> None:
         live, files = self.live, self.files
@@ -110,15 +126,19 @@ class Window(QMainWindow):
         live.message.connect(self.messages.appendPlainText)
         self.start.chosen.connect(files.open)
         self.start.asks_for_file.connect(files.ask_and_open)
+        self.start.asks_for_new.connect(files.new)
+        self.start.asks_to_import.connect(files.ask_and_import)
+        files.opening.connect(self._begin_to_open)
         files.not_opened.connect(self.start.show_recent)
-        files.notice.connect(self.work.show_notice)
-        self.work.notice_answered.connect(files.answer_notice)
-        self.text.asks_to_reload.connect(files.reload)
-        self.text.asks_to_leave.connect(self.show_work)
-        self.measured.rows_wanted.connect(self.work.want_rows)
-        live.taken_over.connect(self.docks["Compare"].raise_)
 
     # Pages
+
+    def _begin_to_open(self, name: str) -> None:
+        """Say so at once, since what a study is shown in may have to be made first."""
+        if not self.docks:
+            self.status.showMessage(f"Opening {name} …")
+            self.status.repaint()
+            self.furnish()
 
     def _opened(self) -> None:
         """Show the study that was opened; the start page for none."""
@@ -154,10 +174,11 @@ class Window(QMainWindow):
         self.pages.setCurrentWidget(page)
         study = self.live.study
         has_data = study is not None and study.measurements is not None
+        at_work = bool(self.docks) and page is self.work
         for name, dock in self.docks.items():
             has_any = name != "Measured data" or has_data
-            dock.setVisible(page is self.work and has_any and self.menus.wants_panel(name))
-        if page is self.work and self.settings.bytes_of("layout").isEmpty():
+            dock.setVisible(at_work and has_any and self.menus.wants_panel(name))
+        if at_work and self.settings.bytes_of("layout").isEmpty():
             sides = [self.docks["Study"], self.docks["Here"]]
             self.resizeDocks(sides, list(_SIDES_PX), Qt.Orientation.Horizontal)
             below = round(_BELOW_SHARE * self.height())
@@ -167,7 +188,7 @@ class Window(QMainWindow):
     def show_panels(self) -> None:
         """Show the panels that are wanted, and remember which are not."""
         wants = self.menus.wants_panel
-        self.settings.hidden_panels = [name for name in self.docks if not wants(name)]
+        self.settings.hidden_panels = [name for name in PANELS if not wants(name)]
         page = self.pages.currentWidget()
         assert page is not None
         self._show_page(page)
@@ -184,13 +205,13 @@ class Window(QMainWindow):
         app = QApplication.instance()
         assert isinstance(app, QApplication)
         themes.put_on(app, themes.theme_of(choice))
-        self.work.follow_theme()
+        if self.docks:
+            self.work.follow_theme()
         self.menus.refresh()
 
     def _restore(self) -> None:
         self.resize(1280, 800)
         self.restoreGeometry(self.settings.bytes_of("geometry"))
-        self.restoreState(self.settings.bytes_of("layout"))
         self.put_on(self.settings.theme)
         hints = QApplication.styleHints()
         hints.colorSchemeChanged.connect(lambda _: self.put_on(self.settings.theme))
@@ -202,10 +223,14 @@ class Window(QMainWindow):
             return
         self.files.watch.stop()
         self.settings.keep_bytes("geometry", self.saveGeometry())
-        if self.pages.currentWidget() is self.work:
+        if self.docks and self.pages.currentWidget() is self.work:
             self.settings.keep_bytes("layout", self.saveState())
+        if self.docks:  # nothing moves any more
+            self.here.modes.close()
+            self.work.plays_path.setChecked(False)
         self.live.close()
-        self.work.scene.close()
+        if self.docks:
+            self.work.scene.close()
         event.accept()
 
 

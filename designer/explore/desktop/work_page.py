@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QStandardItemModel
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QSlider, QVBoxLayout, QWidget
+from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtGui import QResizeEvent, QStandardItemModel
+from PySide6.QtWidgets import QBoxLayout, QComboBox, QHBoxLayout, QSlider, QVBoxLayout, QWidget
 
 from designer.explore.desktop.actors import Hit
 from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.painting import Painting
 from designer.explore.desktop.scene import SceneView
-from designer.explore.desktop.widgets import Notice, beside, check_box, fill, named
+from designer.explore.desktop.widgets import DropDown, Notice, beside, check_box, fill, named
 from designer.explore.quantities import BY_KEY, QUANTITIES, category_labels
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.figures import canvas
 from designer.report.figures.colours import Steps
+from designer.report.figures.mode_shapes import PERIOD_S
 from designer.report.figures.view import clear_azimuth_rad, facing_azimuth_rad, fitting
 
 if TYPE_CHECKING:
+    from designer.arrays import FloatArray
     from designer.explore.here import Here
     from designer.explore.map import MapAnswer, WorstAnswer
     from designer.explore.measurements import Residuals
@@ -32,6 +35,13 @@ if TYPE_CHECKING:
 FACTORS = (1, 2, 5, 10, 20, 50)
 _ELEVATION_RAD = float(np.radians(28.0))
 """Floor, walls and top of a region are all seen from there."""
+_FRAME_MS = 40
+_LONGEST_S = 20.0
+"""A path that takes longer is played faster."""
+_MODE_SHARE, _MODE_RAD = 0.04, 0.25
+"""How far a mode is drawn to move, over the size of the scene, and how far to turn."""
+_BAR_PX, _ONE_ROW_PX = 372, 700
+"""The narrowest bar, and how narrow it is in two rows."""
 _BRIGHTEST = 5.0
 """Residual of the brightest rows, in units of noise: by chance none is as large."""
 
@@ -56,6 +66,10 @@ class WorkPage(QWidget):
         self._residuals: Residuals | None = None
         self._shows_rows = self._is_old = False
         self._view = "home"
+        self._mode: FloatArray | None = None
+        self._play_start_s, self._path_note = 0.0, ""
+        self._frames = QTimer(self, interval=_FRAME_MS)
+        self._frames.timeout.connect(self._next_frame)
         self._notice = Notice()
         self._notice.answered.connect(self.notice_answered)
         rows = QVBoxLayout(self)
@@ -77,6 +91,8 @@ class WorkPage(QWidget):
         scene.pointed_at.connect(self._point)
         scene.resized.connect(self._look_again)
         scene.asks_for_position.connect(live.move)
+        scene.asks_for_position.connect(lambda: self.plays_path.setChecked(False))
+        scene.asks_for_exit_point.connect(live.move_exit_point)
         scene.asks_for_shift.connect(live.shift)
         scene.asks_for_turn.connect(live.turn)
         live.changed.connect(self._follow_study)
@@ -88,8 +104,8 @@ class WorkPage(QWidget):
         live.listen(self._show_worst, "worst")
         live.listen(self._take_residuals, "residuals")
 
-    def _bar(self) -> QHBoxLayout:
-        self.quantity = named(QComboBox(), "quantity")
+    def _bar(self) -> QWidget:
+        self.quantity = DropDown("quantity", 14)
         self.quantity.setAccessibleName("What the map is coloured by")
         for number, quantity in enumerate(QUANTITIES):
             self.quantity.addItem(quantity.title, quantity.key)
@@ -122,12 +138,40 @@ class WorkPage(QWidget):
             self._hold,
             "The colours keep their meaning while the study changes.",
         )
-        bar = beside("Colour by", self.quantity)
-        bar.setContentsMargins(8, 4, 8, 4)
-        bar.setSpacing(6)
-        bar.addSpacing(8)
-        fill(bar, self.holds_scale, self.surface, self.slice, self.exaggeration, None)
+        self.rule = check_box(
+            "rule",
+            "Rule",
+            self.scene.measure,
+            "Click two points of robot or map: the distance between them, and along the axes "
+            "(Ctrl+M).",
+        )
+        self.plays_path = check_box(
+            "play path",
+            "Play",
+            self._play,
+            "Moves the platform along the path of the study (Ctrl+P).",
+        )
+        self.rule.setShortcut("Ctrl+M")
+        self.plays_path.setShortcut("Ctrl+P")
+        colours = beside("Colour by", self.quantity, self.holds_scale, None)
+        shown = beside(
+            self.surface, self.slice, self.exaggeration, self.rule, self.plays_path, None
+        )
+        bar = QWidget()
+        bar.setMinimumWidth(_BAR_PX)
+        self._rows = QBoxLayout(QBoxLayout.Direction.LeftToRight, bar)
+        self._rows.setSizeConstraint(QBoxLayout.SizeConstraint.SetNoConstraint)
+        self._rows.setContentsMargins(8, 4, 8, 4)
+        fill(self._rows, colours, shown)
+        self._rows.setStretch(1, 1)
         return bar
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Break the bar where it has no room in a row."""
+        direction = QBoxLayout.Direction
+        is_wide = self.width() >= _ONE_ROW_PX
+        self._rows.setDirection(direction.LeftToRight if is_wide else direction.TopToBottom)
+        super().resizeEvent(event)
 
     def _slice_slider(self) -> QSlider:
         slider = named(QSlider(Qt.Orientation.Vertical), "slice height")
@@ -166,7 +210,12 @@ class WorkPage(QWidget):
         together = 0.04 * float(np.linalg.norm(np.ptp(stage.bounds_m, axis=0)))
         self.scene.overlay.names = canvas.names_of(study.robot.exit_points_m, together)
         self.scene.can_turn = not study.robot.is_point_mass
+        self.scene.show_exit_points(study.robot.exit_points_m)
+        self.plays_path.setVisible(study.robot.platform.motion is not None)
         if afresh:
+            self.plays_path.setChecked(False)
+            self.rule.setChecked(False)
+            self.scene.choose_exit_point(None)
             self.look("home")
         self.scene.redraw()
 
@@ -177,7 +226,8 @@ class WorkPage(QWidget):
             if not np.array_equal(place, self._place):
                 self._pose_answer = None
             self._place = np.array(place)
-            self._show_place()
+            if not self.plays_path.isChecked():  # else with its cables, once they are answered
+                self._show_place()
 
     def _show_here(self, answer: Here | None) -> None:
         """Show the cables in their true shape."""
@@ -188,10 +238,67 @@ class WorkPage(QWidget):
         if self._study is None:
             return
         factor = float(self.exaggeration.currentData())
-        self.scene.stage.put_place(self._study, self._place, self._pose_answer, factor)
+        place = self._place if self._mode is None else self._deflected(self._mode)
+        self.scene.stage.put_place(self._study, place, self._pose_answer, factor)
         self.scene.overlay.platform_m = self._place[:3].copy()
         self._write_note()
         self.scene.redraw()
+
+    # What moves
+
+    def _play(self, is_playing: bool) -> None:
+        """Move the platform along the path from its start, or leave it where it is."""
+        self._play_start_s, self._path_note = time.monotonic(), ""
+        self._follow_motion()
+        if not is_playing and self._live.session is not None:
+            self._live.move(self._live.session.state.place)  # it rests there
+            self._show_place()
+
+    def play_mode(self, shape: FloatArray | None) -> None:
+        """Move the platform in a mode (3,) or (6,) about where it is; rest for None."""
+        self._mode = shape
+        self._follow_motion()
+        self._show_place()
+
+    def _follow_motion(self) -> None:
+        is_moving = self.plays_path.isChecked() or self._mode is not None
+        (self._frames.start if is_moving else self._frames.stop)()
+
+    def _next_frame(self) -> None:
+        """Go to the instant of the path whose time it is, once the last one is answered."""
+        if not self.plays_path.isChecked():
+            self._show_place()
+            return
+        motion = None if self._study is None else self._study.robot.platform.motion
+        if motion is None or not self.isVisible():
+            self.plays_path.setChecked(False)
+        elif "here" not in self._live.busy:
+            time_s = motion.time_s - motion.time_s[0]
+            pace = max(float(time_s[-1]) / _LONGEST_S, 1.0)
+            number = int(np.searchsorted(time_s, (time.monotonic() - self._play_start_s) * pace))
+            is_over, number = number >= len(time_s) - 1, min(number, len(time_s) - 1)
+            faster = f", {fmt.number(pace, 2)} times as fast" if pace > 1.0 else ""
+            self._path_note = f"path: {time_s[number]:.1f} s of {time_s[-1]:.1f} s{faster}"
+            self._live.move(motion.places[number], True)
+            self.plays_path.setChecked(not is_over)
+
+    def _deflected(self, mode: FloatArray) -> FloatArray:
+        """Where the platform is in a mode at this time, drawn far larger than it is."""
+        from scipy.spatial.transform import Rotation
+
+        size_m = float(np.linalg.norm(np.ptp(self.scene.stage.bounds_m, axis=0)))
+        shift, turn = mode[:3], mode[3:]
+        farthest = max(
+            float(np.linalg.norm(shift)) / (_MODE_SHARE * size_m),
+            float(np.linalg.norm(turn)) / _MODE_RAD,
+        )
+        scale = math.cos(2.0 * math.pi * time.monotonic() / PERIOD_S) / farthest
+        place = self._place.copy()
+        place[:3] += scale * shift
+        if len(turn):
+            turned = Rotation.from_rotvec(scale * turn) * Rotation.from_rotvec(place[3:])
+            place[3:] = turned.as_rotvec()
+        return place
 
     def show_map(self, answer: MapAnswer | None) -> None:
         """Show the map; nothing where nothing is known of it any more."""
@@ -246,7 +353,9 @@ class WorkPage(QWidget):
         has_rows = self._shows_rows and self._residuals is not None
         scale = f"residual from 0 (dark) to {_BRIGHTEST:g} times the noise (bright)"
         rows = f"measured rows: {scale}" if has_rows else ""
-        self.scene.overlay.note = "\n".join(filter(None, [sag, rows]))
+        mode = "mode drawn far larger than it is" if self._mode is not None else ""
+        lines = filter(None, [sag, rows, mode, self._path_note])
+        self.scene.overlay.note = "\n".join(lines)
         self.scene.overlay.update()
 
     def _show_map(self) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -25,6 +27,65 @@ def test_the_start_page_shows_shipped_and_recent_studies(empty: Driver, tmp_path
     empty.click(recent)
     empty.rest()
     assert empty.session.file == tmp_path / "yard.yaml"
+
+
+_START = """
+import sys, time
+from designer.explore.desktop.app import application
+from designer.explore.desktop.settings import Settings
+from designer.explore.desktop.window import Window
+from pathlib import Path
+app = application()
+window = Window(Settings(Path(sys.argv[1])))
+window.show()
+app.processEvents()
+assert window.start.isVisible()
+window.close()
+heavy = {"vtkmodules", "pyvista", "pyvistaqt", "matplotlib", "numba", "pydantic"} & set(sys.modules)
+print(sorted(heavy), time.process_time() < 2.0)
+"""
+
+
+def test_start_page_needs_no_library_of_the_scene(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", _START, str(tmp_path / "settings.ini")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=600)
+    assert done.stdout.strip() == "[] True"  # in seconds of a processor
+
+
+def test_ctrl_o_opens_from_every_page(
+    empty: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pages: list[Any] = []
+
+    def ask(*_: object, **__: object) -> tuple[str, str]:
+        pages.append(empty.window.pages.currentWidget())
+        return "", ""
+
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", ask)
+    window = empty.window
+    empty.keys("Ctrl+O")
+    empty.press("open")
+    empty.open(small_yard(tmp_path))
+    empty.keys("Ctrl+O")
+    window.show_text()
+    assert window.text.editor.hasFocus()
+    empty.keys("Ctrl+O")
+    assert pages == [window.start, window.start, window.work, window.text]
+
+
+def test_new_and_import_on_the_start_page(
+    empty: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source, target = tmp_path / "rig.wcrfx", tmp_path / "rig.yaml"
+    source.write_text(wirex_robot(), encoding="utf-8")
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_, **__: (str(source), ""))
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(target), ""))
+    empty.press("import")
+    assert empty.session.file == target
+    empty.keys("Ctrl+W")
+    empty.press("new study")
+    assert empty.session.file is None
+    assert not empty.session.faults
 
 
 def test_new_study_has_no_file(empty: Driver) -> None:

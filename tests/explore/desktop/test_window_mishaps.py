@@ -13,8 +13,6 @@ from PySide6.QtWidgets import QFileDialog, QListWidget, QMessageBox
 from test_window_compare import built_yard
 from window_driver import LONGEST_MS, Driver, small_yard
 
-from designer.plugins.find import find_plugins
-
 BUTTON = QMessageBox.StandardButton
 
 
@@ -32,7 +30,7 @@ def broken_plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("broken_plugin")
 def test_a_plugin_that_fails_is_told_and_the_rest_works(qtbot: Any, tmp_path: Path) -> None:
-    driver = Driver(qtbot, tmp_path, plugins=find_plugins())
+    driver = Driver(qtbot, tmp_path, with_plugins=True)
     driver.window.files.open(small_yard(tmp_path))
     assert "no licence" in driver.window.statusBar().currentMessage()  # for some seconds
     driver.rest()

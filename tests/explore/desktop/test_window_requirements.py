@@ -103,3 +103,21 @@ def test_a_study_of_a_pose_alone_has_an_answer_as_well(yard: Driver) -> None:
     click(view, 0)
     yard.rest()
     assert np.array_equal(yard.place, yard.session.study.pose.place)
+
+
+def test_study_that_asks_for_no_rope_needs_no_selection(yard: Driver) -> None:
+    text = yard.session.text
+    bare = yard.session.file.with_name("bare.yaml")
+    bare.write_text(text[: text.index("selection:")], encoding="utf-8")
+    yard.open(bare)
+    question = yard.window.live.question
+    analysis = Analysis.begin(question.study, question.catalogue)
+    view = table(yard)
+    assert len(cells(view)) == len(analysis.requirements) > 3
+    assert {row[1] for row in cells(view)} == {each.title for each in analysis.requirements}
+    assert yard.find(QLabel, "answer").text().startswith("Yes: ")
+    yard.type_into("entry workspace.sag", "0.001")
+    yard.rest()
+    assert yard.find(QLabel, "answer").text().startswith("No: ")
+    assert cells(view)[0][:2] == ["does not hold", "Sag"]
+    assert not yard.find(QLabel, "answer").property("old")

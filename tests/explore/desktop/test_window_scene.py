@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint
-from PySide6.QtWidgets import QComboBox, QWidget
-from window_driver import LONGEST_MS, Driver, n_colours
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QCheckBox, QComboBox, QLabel, QPushButton, QWidget
+from window_driver import LEFT, LONGEST_MS, Driver, n_colours, small_yard
 
+from designer.explore.desktop.scene import snapped
 from designer.report import format as fmt
 
 
@@ -106,8 +110,6 @@ def test_the_mouse_reads_the_map(yard: Driver) -> None:
     work = yard.window.work
     wanted = slice_point(yard)
     value = float(work.map.on("slice", "utilisation")[10, 20])
-    from PySide6.QtTest import QTest
-
     QTest.mouseMove(yard.scene, yard.pixel(wanted))
     yard.bot.waitUntil(lambda: yard.scene.overlay.pointed is not None, timeout=LONGEST_MS)
     text = yard.scene.overlay.pointed[1]
@@ -206,3 +208,185 @@ def test_a_held_scale_keeps_its_steps(yard: Driver) -> None:
     assert yard.scene.colour_legend.steps.levels == pytest.approx(steps)
     yard.press("hold scale")
     assert yard.scene.colour_legend.steps.levels[-1] > steps[-1]
+
+
+# Exit points, the rule, and what moves
+
+
+def test_positions_snap_to_other_points_then_to_the_grid() -> None:
+    others = np.array([[0.0, 0.0, 11.5], [26.0, 15.0, 12.0]])
+    free = np.array([True, True, False])
+    at, alike = snapped(np.array([25.9, 7.38, 9.87]), others, 0.5, 0.2, free)
+    assert at.tolist() == [26.0, 7.5, 9.87]
+    assert alike.tolist() == [1, -1, -1]
+    at, alike = snapped(np.array([25.7, 0.1, 11.4]), others, 0.5, 0.2, np.full(3, True))
+    assert at.tolist() == [25.5, 0.0, 11.5]
+    assert alike.tolist() == [-1, 0, 0]
+
+
+def drag_exit_point(driver: Driver, number: int, *steps: QPoint, keys: Qt.KeyboardModifier) -> None:
+    """Drag an exit point over these steps from where it is."""
+    scene, start = driver.scene, driver.pixel(driver.scene.exit_points_m[number])
+    QTest.mousePress(scene, LEFT, keys, start)
+    for step in steps:
+        event_at = start + step
+        QTest.mouseMove(scene, event_at)
+        QTest.qWait(5)
+    QTest.mouseRelease(scene, LEFT, keys, start + steps[-1])
+
+
+def test_dragging_an_exit_point_edits_the_study(yard: Driver) -> None:
+    before, text = yard.session.study.robot.exit_points_m.copy(), yard.session.text
+    place, step = yard.place.copy(), yard.scene.step_m
+    steps = [QPoint(4 * k, -2 * k) for k in range(1, 9)]
+    drag_exit_point(yard, 0, *steps, keys=Qt.KeyboardModifier.NoModifier)
+    yard.rest()
+    after = yard.session.study.robot.exit_points_m
+    assert (after[1:] == before[1:]).all()
+    assert after[0, 2] == before[0, 2]
+    assert np.linalg.norm(after[0] - before[0]) > step
+    for value, others in zip(after[0, :2], before[1:, :2].T, strict=True):
+        assert value in others or value == pytest.approx(step * round(value / step))
+    assert yard.place == pytest.approx(place)
+    assert "# sheaves near the mast tops" in yard.session.text
+    assert yard.scene.overlay.chosen_m == pytest.approx(after[0])
+    yard.keys("Ctrl+Z")
+    yard.rest()
+    assert yard.session.text == text  # one drag is one step
+
+
+def test_an_exit_point_takes_the_coordinate_of_another(yard: Driver) -> None:
+    points = yard.session.study.robot.exit_points_m
+    start, beside = yard.pixel(points[2]), points[2].copy()
+    beside[0] = points[1][0] + 2.0 / yard.scene.view.pixels_per_m
+    step = yard.pixel(beside) - start
+    drag_exit_point(yard, 2, step / 2, step, keys=Qt.KeyboardModifier.NoModifier)
+    yard.rest()
+    assert yard.session.study.robot.exit_points_m[2, 0] == points[1, 0]
+    yard.keys("Ctrl+Z")
+    yard.rest()
+
+
+def test_ctrl_leaves_an_exit_point_between_the_lines_of_the_grid(yard: Driver) -> None:
+    step = yard.scene.step_m
+    drag_exit_point(yard, 0, QPoint(11, -7), keys=Qt.KeyboardModifier.ControlModifier)
+    yard.rest()
+    x, y, _ = yard.session.study.robot.exit_points_m[0] / step
+    assert abs(x - round(x)) > 0.01 or abs(y - round(y)) > 0.01
+    yard.keys("Ctrl+Z")
+    yard.rest()
+
+
+def test_the_arrow_of_an_exit_point_lifts_it(yard: Driver) -> None:
+    before = yard.session.study.robot.exit_points_m.copy()
+    at = yard.pixel(before[2])
+    yard.click(yard.scene, at)
+    assert yard.scene.chosen == 2
+    assert yard.session.study.robot.exit_points_m == pytest.approx(before)
+    yard.drag(yard.scene, at - QPoint(0, 28), *(at - QPoint(0, 28 + 5 * k) for k in range(1, 7)))
+    yard.rest()
+    after = yard.session.study.robot.exit_points_m
+    assert after[2, :2] == pytest.approx(before[2, :2])
+    assert after[2, 2] > before[2, 2]
+    yard.click(yard.scene, QPoint(12, yard.scene.height() - 12))
+    assert yard.scene.chosen is None
+
+
+def test_an_exit_point_that_is_refused_is_told(yard: Driver) -> None:
+    points = yard.session.study.robot.exit_points_m
+    yard.window.live.move_exit_point(0, points[1], False)
+    assert "is the same point as" in yard.window.messages.toPlainText()
+    assert (yard.session.study.robot.exit_points_m == points).all()
+    yard.rest()
+
+
+def test_the_rule_measures_between_two_points(yard: Driver) -> None:
+    points, place = yard.session.study.robot.exit_points_m, yard.place.copy()
+    yard.keys("Ctrl+M")
+    rule = yard.find(QCheckBox, "rule")
+    yard.bot.waitUntil(rule.isChecked, timeout=LONGEST_MS)
+    for point in (points[0], points[2]):
+        yard.click(yard.scene, yard.pixel(point))
+    apart = points[2] - points[0]
+    text = yard.scene.overlay.rule_text()
+    assert text.startswith(f"{np.linalg.norm(apart):.3f} m")
+    assert fmt.position(apart) in text
+    assert text in yard.scene.overlay.texts()
+    wanted = slice_point(yard)
+    yard.click(yard.scene, yard.pixel(wanted))  # begins anew, on the map
+    assert len(yard.scene.overlay.rule_m) == 1
+    assert yard.scene.overlay.rule_m[0] == pytest.approx(wanted, abs=0.3)
+    assert yard.place == pytest.approx(place)
+    assert yard.scene.chosen is None
+    yard.keys("Ctrl+M")
+    yard.bot.waitUntil(lambda: not rule.isChecked(), timeout=LONGEST_MS)
+    assert not yard.scene.overlay.rule_m
+
+
+def test_a_path_is_played(yard: Driver) -> None:
+    file = yard.session.file
+    file.with_name("path.csv").write_text(
+        "time_s,x_m,y_m,z_m\n0,12,9,4\n1,15,9,5\n2,18,9,4\n", encoding="utf-8"
+    )
+    text = yard.session.text
+    region = text[text.index("  region:") : text.index("  samples:")]
+    file.write_text(text.replace(region, "  path: path.csv\n"), encoding="utf-8")
+    player = yard.find(QCheckBox, "play path")
+    assert not player.isVisible()
+    yard.open(file)
+    assert player.isVisible()
+    before, seen = yard.place.copy(), []
+    yard.window.live.listen(lambda answer: answer and seen.append(answer.statics.poses), "here")
+    yard.keys("Ctrl+P")
+    yard.bot.waitUntil(lambda: yard.scene.overlay.note.startswith("path: "), timeout=LONGEST_MS)
+    yard.bot.waitUntil(lambda: not player.isChecked(), timeout=LONGEST_MS)
+    yard.rest()
+    assert yard.place[:3].tolist() == [18.0, 9.0, 4.0]
+    assert len({tuple(pose.position_m) for pose in seen}) > 2
+    assert not yard.scene.overlay.note
+    yard.keys("Ctrl+Z")
+    assert yard.place == pytest.approx(before)
+    yard.rest()
+
+
+def test_a_mode_moves_in_the_scene(yard: Driver) -> None:
+    yard.press("modes")
+    modes, stage = yard.window.here.modes, yard.scene.stage
+    modes.in_scene.click()
+    ends = []
+
+    def look() -> bool:
+        points = np.array(stage.cables.mesh.points).reshape(3, -1, 3)
+        assert points[:, 0] == pytest.approx(yard.scene.exit_points_m)
+        assert points[:, -1] == pytest.approx(stage.attachments_m)
+        ends.append(points[0, -1])
+        return bool(np.ptp(ends, axis=0).max() > 0.1)
+
+    yard.bot.waitUntil(look, timeout=LONGEST_MS)
+    shape = yard.window.live.answers["here"].modes.modes[0].shape
+    away = np.array(ends) - yard.place[:3]
+    assert np.cross(away, shape[:3]) == pytest.approx(np.zeros_like(away), abs=1e-3)
+    modes.hide()
+    assert np.array(stage.attachments_m) == pytest.approx(np.tile(yard.place[:3], (3, 1)))
+
+
+@pytest.mark.parametrize("size", [(1024, 700), (1280, 800), (2560, 1440)])
+@pytest.mark.parametrize("study", ["yard", "ipanema"])
+def test_nothing_is_cut_off(
+    empty: Driver, tmp_path: Path, size: tuple[int, int], study: str
+) -> None:
+    window = empty.window
+    window.resize(*size)
+    empty.open(small_yard(tmp_path) if study == "yard" else study)
+    assert (window.width(), window.height()) == size
+    parts = [*window.findChildren(QLabel), *window.findChildren(QPushButton)]
+    cut = [
+        part.text()
+        for part in [*parts, *window.findChildren(QCheckBox)]
+        if part.isVisible() and part.text() and not part.visibleRegion().isEmpty()
+        and not getattr(part, "wordWrap", bool)() and part.width() < part.minimumSizeHint().width()
+    ]  # fmt: skip
+    assert cut == []
+    bar = empty.find(QCheckBox, "rule").parentWidget()
+    for box in bar.findChildren(QWidget):
+        assert not box.isVisible() or bar.rect().contains(box.geometry()), box.objectName()

@@ -28,7 +28,6 @@ from designer.arrays import FloatArray  # noqa: E402
 from designer.explore.desktop.settings import Settings  # noqa: E402
 from designer.explore.desktop.window import Window  # noqa: E402
 from designer.explore.session import Session  # noqa: E402
-from designer.plugins.find import Plugins, find_plugins  # noqa: E402
 from designer.resources import example_file  # noqa: E402
 
 Some = TypeVar("Some", bound=QObject)
@@ -41,12 +40,12 @@ class Driver:
     """A window of its own, with settings in a folder of its own."""
 
     def __init__(
-        self, bot: Any, folder: Path, theme: str = "light", plugins: Plugins | None = None
+        self, bot: Any, folder: Path, theme: str = "light", *, with_plugins: bool = False
     ) -> None:
         self.bot = bot
         self.settings = Settings(folder / "settings.ini")
         self.settings.theme = theme or self.settings.theme
-        self.window = Window(plugins or find_plugins(with_plugins=False), self.settings)
+        self.window = Window(self.settings, with_plugins=with_plugins)
         with bot.waitExposed(self.window):
             self.window.show()
         self.window.activateWindow()  # without a window manager nobody else does it
@@ -59,6 +58,7 @@ class Driver:
 
     def reset(self) -> None:
         """Show what is shown at first."""
+        self.window.furnish()
         work = self.window.work
         self.window.live.session = None
         for box in (work.surface, work.slice):
