@@ -12,7 +12,7 @@ from designer.diagnosis.result import Diagnosis
 from designer.effects.load import load_effects
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.io import config
-from designer.plugins.find import find_plugins
+from designer.plugins import find_plugins
 from designer.report.render import write_report
 from designer.study import Study
 

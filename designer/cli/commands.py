@@ -343,7 +343,7 @@ def explore(
     Exit status 0: the window was closed. 2: no window can be opened, or the file cannot be read.
     """
     from designer.explore.desktop.display import begin_probe, why_no_library, why_no_window
-    from designer.plugins.find import find_plugins
+    from designer.plugins import find_plugins
 
     missing = why_no_library()
     if missing:

@@ -17,7 +17,7 @@ from designer.units import LENGTH, MASS, NUMBER, Dimension
 if TYPE_CHECKING:
     from designer.foreign.robot import ForeignRobot, Point
     from designer.foreign.study import Gap
-    from designer.plugins.find import Plugins
+    from designer.plugins import Plugins
 
 Vector = Any
 """Three numbers in one text; typer would have a tuple as three arguments."""
@@ -91,7 +91,7 @@ def import_robot(
     """
     from designer.foreign.study import ImportAnswers, gaps, read_foreign, study_text
     from designer.io.output import write_new_file
-    from designer.plugins.find import find_plugins
+    from designer.plugins import find_plugins
 
     robot = read_foreign(file, other, cable_set)
     answers = ImportAnswers(mass, payload, centre_of_mass, pose, gravity, grade, safety_factor)

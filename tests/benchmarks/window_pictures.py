@@ -16,7 +16,7 @@ from PySide6.QtWidgets import QApplication
 from designer.explore.desktop.app import application
 from designer.explore.desktop.settings import Settings
 from designer.explore.desktop.window import Window
-from designer.plugins.find import find_plugins
+from designer.plugins import find_plugins
 from designer.resources import example_file, example_names
 
 PICTURES = example_file("fast").parent / "pictures"

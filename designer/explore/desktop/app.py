@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication
 
 from designer.explore.desktop.settings import Settings
 from designer.explore.desktop.window import Window
-from designer.plugins.find import Plugins
+from designer.plugins import Plugins
 
 _LONGEST_S = 300
 """Room for kernels that are compiled first and a large map, on a machine with other work."""

@@ -17,7 +17,7 @@ from designer.explore.desktop.live_session import LONG, NAMES, LiveSession
 from designer.explore.desktop.settings import Settings
 from designer.explore.export import OptimisedStudy, What, Written
 from designer.explore.session import Session
-from designer.plugins.find import Plugins
+from designer.plugins import Plugins
 from designer.report import format as fmt
 from designer.resources import example_file
 

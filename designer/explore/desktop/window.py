@@ -34,7 +34,7 @@ from designer.explore.desktop.text_page import TextPage
 from designer.explore.desktop.widgets import fill, named
 from designer.explore.desktop.work_page import WorkPage
 from designer.explore.question import Long
-from designer.plugins.find import Plugins
+from designer.plugins import Plugins
 
 _HINT_MS = 20_000
 """The hint stays longer than a message: a newcomer looks at the scene first."""

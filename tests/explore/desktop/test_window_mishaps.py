@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QFileDialog, QListWidget, QMessageBox
 from test_window_compare import built_yard
 from window_driver import LONGEST_MS, Driver, small_yard
 
-from designer.plugins.find import find_plugins
+from designer.plugins import find_plugins
 
 BUTTON = QMessageBox.StandardButton
 

@@ -28,7 +28,7 @@ from designer.arrays import FloatArray  # noqa: E402
 from designer.explore.desktop.settings import Settings  # noqa: E402
 from designer.explore.desktop.window import Window  # noqa: E402
 from designer.explore.session import Session  # noqa: E402
-from designer.plugins.find import Plugins, find_plugins  # noqa: E402
+from designer.plugins import Plugins, find_plugins  # noqa: E402
 from designer.resources import example_file  # noqa: E402
 
 Some = TypeVar("Some", bound=QObject)
