@@ -6,6 +6,7 @@
     ├── InputError          the user's files or arguments are wrong (exit status 2)
     ├── OutputError         the results cannot be written where asked (exit status 2)
     ├── MissingLibraryError the machine lacks what draws in space (exit status 2)
+    ├── PluginError         code of a plugin fails at work (exit status 2)
     └── EffectError         an effect that a plugin brought in fails at work (exit status 2)
 """
 
@@ -91,6 +92,10 @@ class OutputError(DesignerError):
 
 class MissingLibraryError(DesignerError):
     """A library of the operating system is missing; the message names its package."""
+
+
+class PluginError(DesignerError):
+    """Code of a plugin fails at work; says whose it is, and what happened."""
 
 
 class EffectError(DesignerError):

@@ -1,4 +1,4 @@
-"""The plugin door: how rope grades and physical effects come in, ours as well as anybody's.
+"""The plugin door: how grades, effects, commands, files and sections of a report come in.
 
 A plugin is a Python distribution with an entry point in the group ``designer.plugins``, whose
 module implements one of the hooks below, or several::
@@ -17,21 +17,24 @@ exits becomes a line with its name and its distribution, and everything else wor
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import redirect_stdout
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import EntryPoint, distributions
 from os import PathLike
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import pluggy
 
 import designer
-from designer.errors import described, one_line
+from designer.errors import PluginError, described, one_line
 
 if TYPE_CHECKING:
+    from designer.analysis.analyse import Analysis
     from designer.effects.effect import Effect
+    from designer.export.formats import Format
+    from designer.foreign.robot import Importer
     from designer.grades.grade import Grade
 
 PROJECT = "designer"
@@ -68,7 +71,38 @@ def register_effects() -> Sequence[Effect]:
     raise NotImplementedError  # only the signature counts
 
 
-HOOKS = (register_grades.__name__, register_effects.__name__)
+@hookspec
+def register_commands() -> Sequence[Callable[..., object]]:
+    """Return a list of functions, each a command of its name as `typer` makes it.
+
+    One that returns False has answered no.
+    """
+    raise NotImplementedError  # only the signature counts
+
+
+@hookspec
+def register_importers() -> Sequence[Importer]:
+    """Return a list of what reads robots from other programs' files, for `designer import`."""
+    raise NotImplementedError  # only the signature counts
+
+
+@hookspec
+def register_exporters() -> Sequence[Format]:
+    """Return a list of formats for `designer export`."""
+    raise NotImplementedError  # only the signature counts
+
+
+@hookspec
+def register_report_sections() -> Sequence[Callable[[Analysis], tuple[str, str] | None]]:
+    """Return a list of functions, each a section of the design report by its name.
+
+    It returns title and body: text, or HTML as `markupsafe.Markup`; None where the study gives
+    nothing for it.
+    """
+    raise NotImplementedError  # only the signature counts
+
+
+HOOKS = tuple(name for name in globals() if name.startswith("register_"))
 """Names of all hooks."""
 
 
@@ -140,6 +174,49 @@ def call_hook(plugins: Plugins, hook: str) -> tuple[list[Offer], list[str]]:
     return offers, problems
 
 
+def registered(
+    plugins: Plugins,
+    hook: str,
+    kind: type[Value],
+    name_of: Callable[[Value], str],
+    taken: Collection[str] = (),
+) -> tuple[dict[str, tuple[Value, str]], list[str]]:
+    """Return what the plugins give in answer to a hook, by name, each with its plugin's label.
+
+    What is not of the class ``kind``, or has a name that is ``taken``, is left out with a line.
+    """
+    offers, problems = call_hook(plugins, hook)
+    items: dict[str, tuple[Value, str]] = {}
+    for offer in offers:
+        for item in offer.items:
+            problem = ""
+            if not isinstance(item, kind):
+                problem = f"{type(item).__name__} (expected {kind.__name__})"
+            elif (name := name_of(item)) in taken or name in items:
+                problem = f"{name!r}, which is there already"
+            else:
+                items[name] = item, offer.label
+            if problem:
+                problems.append(f"{offer.label}: {hook}() gave {one_line(problem)}: left out")
+    return items, problems
+
+
+def command_name(function: Any) -> str:
+    """Return a function's name with hyphens, as commands and sections have it."""
+    return str(function.__name__).replace("_", "-")
+
+
+@contextmanager
+def named(label: str, failure: str, *passed: type[BaseException]) -> Iterator[None]:
+    """Make whatever goes wrong in a plugin a `PluginError`, except errors that are ``passed``."""
+    try:
+        yield
+    except BaseException as error:  # it may also exit
+        if isinstance(error, (KeyboardInterrupt, *passed)):
+            raise
+        raise PluginError(f"{label} {failure}: {described(error)}") from error
+
+
 def attempt(
     action: Callable[[], Value], label: str, failure: str, problems: list[str]
 ) -> Value | None:
@@ -149,12 +226,10 @@ def attempt(
     loaded". What it prints goes to standard error: standard output may be read by a program.
     """
     try:
-        with redirect_stdout(sys.stderr):
+        with named(label, failure), redirect_stdout(sys.stderr):
             return action()
-    except KeyboardInterrupt:
-        raise
-    except BaseException as error:  # it may also exit
-        problems.append(f"{label} {failure}: {described(error)}: left out")
+    except PluginError as error:
+        problems.append(f"{error}: left out")
         return None
 
 
@@ -188,7 +263,7 @@ def _hooks_of(entry: EntryPoint) -> dict[str, Callable[[], object]]:
         for implementation in getattr(manager.hook, name).get_hookimpls()
     }
     if not hooks:
-        raise TypeError("it has no hook " + " or ".join(f"{name}()" for name in HOOKS))
+        raise TypeError("it has no hook such as register_grades()")
     return hooks
 
 

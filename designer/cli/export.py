@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -12,19 +11,11 @@ from designer.cli.options import Config, NoPlugins, catalogue_of, output_option,
 from designer.errors import InputError
 
 
-class Target(StrEnum):
-    """The formats, as `designer.export.formats.FORMATS` has them."""
-
-    CASPR = "caspr"
-    MOORDYN = "moordyn"
-    MUJOCO = "mujoco"
-    GLTF = "gltf"
-    CSV = "csv"
-
-
 def export(
     config: Config,
-    to: Annotated[Target, typer.Option("--to", help="For which program; see above.")],
+    to: Annotated[
+        str, typer.Option("--to", metavar="FORMAT", help="For which program; see above.")
+    ],
     output: Annotated[Path | None, output_option("CONFIG with the ending below", "FILE")] = None,
     no_plugins: NoPlugins = False,
 ) -> bool:
@@ -54,16 +45,20 @@ def export(
     wrong or the format cannot hold such a robot, and nothing is written.
     """
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
-    from designer.export.formats import FORMATS
+    from designer.export.formats import load_formats
     from designer.io.output import output_folder, require_file
 
     study, plugins = study_of(config, no_plugins)
+    formats, problems = load_formats(plugins)
+    print_left_out(problems)
+    if to not in formats:
+        raise InputError.at("--to", f"there is no format {to!r}", f"one of {', '.join(formats)}")
+    kind = formats[to]
     catalogue = catalogue_of(study, plugins)
-    kind = FORMATS[to.value]
     path = output or Path(f"{config.stem}{kind.ending}")
     if not path.name.endswith(kind.ending):
         expected = f"a name that ends in {kind.ending}"
-        raise InputError.at("--output", f"{path} is no file of {to.value}", expected)
+        raise InputError.at("--output", f"{path} is no file of {to}", expected)
     announce_compiling()
 
     from designer.export.robot import ExportedRobot

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from designer.foreign.study import Gap
     from designer.plugins import Plugins
 
+_OWN_ENDINGS = (".xml", ".wcrfx")
 Vector = Any
 """Three numbers in one text; typer would have a tuple as three arguments."""
 
@@ -47,7 +48,7 @@ def _vector(name: str, text: str, dimension: Dimension) -> Any:
 
 
 def import_robot(
-    file: Annotated[Path, argument("FILE", "A CASPR model (.xml) or .wcrfx.")],
+    file: Annotated[Path, argument("FILE", "A CASPR model (.xml), .wcrfx or a plugin's file.")],
     output: Annotated[Path | None, output_option("FILE's name with .yaml", "CONFIG")] = None,
     other: Annotated[
         Path | None,
@@ -89,17 +90,24 @@ def import_robot(
     Exit status 0: the study is whole. 1: it is written, and something is to be filled in. 2: the
     input is wrong or no study can hold such a robot, and nothing is written.
     """
+    from designer.cli.terminal import print_left_out
+    from designer.foreign.robot import Importer
     from designer.foreign.study import ImportAnswers, gaps, read_foreign, study_text
     from designer.io.output import write_new_file
-    from designer.plugins import find_plugins
+    from designer.plugins import find_plugins, registered
 
-    robot = read_foreign(file, other, cable_set)
+    plugins = find_plugins(with_plugins=not no_plugins)
+    importers, problems = registered(
+        plugins, "register_importers", Importer, lambda importer: importer.ending, _OWN_ENDINGS
+    )
+    print_left_out([*plugins.problems, *problems])
+    robot = read_foreign(file, other, cable_set, importers)
     answers = ImportAnswers(mass, payload, centre_of_mass, pose, gravity, grade, safety_factor)
     text = study_text(robot, answers)
     missing = gaps(text)
     stem = file.stem.removesuffix("_bodies").removesuffix("_cables")
     path = output or Path(f"{stem}.yaml")
-    _require_valid(text, missing, robot, path, find_plugins(with_plugins=not no_plugins))
+    _require_valid(text, missing, robot, path, plugins)
     write_new_file(path, text)
     _tell(path, robot, missing)
     return not missing

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
 from designer.documents.xml import read_xml
-from designer.errors import InputError
+from designer.errors import DesignerError, InputError
 from designer.foreign import caspr, wirex
-from designer.foreign.robot import ForeignRobot, Point
+from designer.foreign.robot import ForeignRobot, Importer, Point
+from designer.plugins import named
 from designer.units import DENSITY, FORCE, MASS, STRESS, format_SI
 
 FILL_IN = "fill in"
@@ -271,9 +273,12 @@ def _list(values: tuple[float, ...]) -> str:
 
 
 def read_foreign(
-    path: Path, other: Path | None = None, cable_set: str | None = None
+    path: Path,
+    other: Path | None = None,
+    cable_set: str | None = None,
+    importers: Mapping[str, tuple[Importer, str]] = MappingProxyType({}),
 ) -> ForeignRobot:
-    """Return the robot of a CASPR model (either file of it) or of a WireX file.
+    """Return the robot of a CASPR model (either file of it), a WireX file or a plugin's file.
 
     Parameters
     ----------
@@ -283,12 +288,23 @@ def read_foreign(
         The other file of a CASPR model; None for the one beside it.
     cable_set : str or None
         Which set of cables of a CASPR model; None for the file's default.
+    importers : mapping of str to tuple
+        Those of plugins by the ending of their files, each with its plugin's label.
 
     Raises
     ------
     InputError
         If a file is missing or faulty, is of another kind, or no study can hold such a robot.
+    PluginError
+        If a plugin fails.
     """
+    for ending, (importer, label) in importers.items():
+        if path.name.endswith(ending):
+            with named(label, f"fails in reading {path}", DesignerError):
+                robot = importer.read(path)
+                if not isinstance(robot, ForeignRobot):
+                    raise TypeError(f"it returned {type(robot).__name__}, not a ForeignRobot")
+            return robot.as_point_mass()
     root = read_xml(path)
     if root.tag in caspr.ROOTS:
         return caspr.read_caspr(path, root, other, cable_set).as_point_mass()

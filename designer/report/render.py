@@ -74,6 +74,8 @@ def rendered(
     """
     from markupsafe import Markup
 
+    if section.body:  # that of a plugin
+        return section
     templates = templates or environment()
     name = f"{'report' if report is None else report.name}/{section.id}.html.j2"
     variables = {**section.context, "section": section, "report": report, "paged": paged}
@@ -142,10 +144,15 @@ def write_report_files(
     folder: Path,
     templates: Path | None = None,
     reporter: Reporter = SILENT,
-) -> None:
-    """Write the report and all results into an existing folder."""
-    write_pages(design_report(analysis), folder, templates, reporter)
+) -> tuple[str, ...]:
+    """Write the report and all results into an existing folder.
+
+    Returns a line for each section of a plugin that is left out.
+    """
+    report = design_report(analysis)
+    write_pages(report, folder, templates, reporter)
     write_results(analysis, folder)
+    return report.problems
 
 
 def write_pages(
