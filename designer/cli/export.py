@@ -36,6 +36,8 @@ def export(
     gltf: what the report draws in space: robot, platform and cables in the reference pose and the
     worst one, the region with its maps, a scene each (.glb). Lost: all that is no picture.
 
+    Plugins may bring other formats.
+
     Numbers are of the robot as the declared effects have it, at rest under the loads of `robot`,
     with the ropes of the answer. What a study has and a file does not is told here and in the file.
 

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from designer.foreign.study import Gap
     from designer.plugins import Plugins
 
-_OWN_ENDINGS = (".xml", ".wcrfx")
 Vector = Any
 """Three numbers in one text; typer would have a tuple as three arguments."""
 
@@ -80,7 +79,7 @@ def import_robot(
     ] = None,
     no_plugins: NoPlugins = False,
 ) -> bool:
-    """Make a commented study of a robot in a file of CASPR or WireX.
+    """Make a commented study of a robot in a file of CASPR, of WireX, or of a plugin's kind.
 
     CASPR keeps a model in two files, NAME_bodies.xml and NAME_cables.xml: name either. What neither
     the file nor an option says is marked 'fill in', and told.
@@ -91,15 +90,18 @@ def import_robot(
     input is wrong or no study can hold such a robot, and nothing is written.
     """
     from designer.cli.terminal import print_left_out
-    from designer.foreign.robot import Importer
-    from designer.foreign.study import ImportAnswers, gaps, read_foreign, study_text
+    from designer.foreign.study import (
+        ImportAnswers,
+        gaps,
+        load_importers,
+        read_foreign,
+        study_text,
+    )
     from designer.io.output import write_new_file
-    from designer.plugins import find_plugins, registered
+    from designer.plugins import find_plugins
 
     plugins = find_plugins(with_plugins=not no_plugins)
-    importers, problems = registered(
-        plugins, "register_importers", Importer, lambda importer: importer.ending, _OWN_ENDINGS
-    )
+    importers, problems = load_importers(plugins)
     print_left_out([*plugins.problems, *problems])
     robot = read_foreign(file, other, cable_set, importers)
     answers = ImportAnswers(mass, payload, centre_of_mass, pose, gravity, grade, safety_factor)

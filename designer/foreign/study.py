@@ -14,10 +14,13 @@ from designer.documents.xml import read_xml
 from designer.errors import DesignerError, InputError
 from designer.foreign import caspr, wirex
 from designer.foreign.robot import ForeignRobot, Importer, Point
-from designer.plugins import named
+from designer.plugins import Plugins, named, registered
 from designer.units import DENSITY, FORCE, MASS, STRESS, format_SI
 
 FILL_IN = "fill in"
+OWN_ENDINGS = (".xml", ".wcrfx")
+Importers = Mapping[str, tuple[Importer, str]]
+"""Those of plugins, by the ending of their files, each with its plugin's label."""
 _DOWN = (0.0, 0.0, -1.0)
 _FIGURES = "density, youngs_modulus and allowable_stress"
 
@@ -272,11 +275,18 @@ def _list(values: tuple[float, ...]) -> str:
     return f"[{', '.join(map(_number, values))}]"
 
 
+def load_importers(plugins: Plugins) -> tuple[Importers, list[str]]:
+    """Return the importers of plugins for `read_foreign`, and a line for each that is left out."""
+    return registered(
+        plugins, "register_importers", Importer, lambda importer: importer.ending, OWN_ENDINGS
+    )
+
+
 def read_foreign(
     path: Path,
     other: Path | None = None,
     cable_set: str | None = None,
-    importers: Mapping[str, tuple[Importer, str]] = MappingProxyType({}),
+    importers: Importers = MappingProxyType({}),
 ) -> ForeignRobot:
     """Return the robot of a CASPR model (either file of it), a WireX file or a plugin's file.
 
@@ -289,7 +299,7 @@ def read_foreign(
     cable_set : str or None
         Which set of cables of a CASPR model; None for the file's default.
     importers : mapping of str to tuple
-        Those of plugins by the ending of their files, each with its plugin's label.
+        Those of plugins; see `load_importers`.
 
     Raises
     ------

@@ -72,7 +72,7 @@ def test_a_plugin_may_give_files_and_grades_made_in_python(site, tmp_path):
         ("acme-items", hook("return [7]"), "gave int, not a path or a Grade"),
         ("acme-relative", hook("return ['ropes']"), "gave the relative path 'ropes'"),
         ("acme-absent", hook("return ['/no/such/folder/of/ropes']"), "there is no such file"),
-        ("acme-hookless", "x = 1", "it has no hook register_grades() or register_effects()"),
+        ("acme-hookless", "x = 1", "it has no hook such as register_grades(): left out"),
         ("acme-lazy", hook("yield 'a rope'"), "it returned generator, not a list"),
         (
             "acme-arguments",

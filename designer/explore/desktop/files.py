@@ -94,7 +94,9 @@ class Files(QObject):
         stem = source.stem.removesuffix("_bodies").removesuffix("_cables")
         start = str(source.with_name(f"{stem}.yaml"))
         name, _ = QFileDialog.getSaveFileName(self._parent, "Save the study as", start, _STUDIES)
-        if name and self._succeeds(lambda: _import(source, Path(name)), "Not imported"):
+        if name and self._succeeds(
+            lambda: _import(source, Path(name), self._plugins), "Not imported"
+        ):
             self.open(Path(name))
 
     def open(self, path: Path) -> None:
@@ -315,7 +317,7 @@ class Files(QObject):
         self.notice.emit(f"{main.name} is in {main.parent}.", ("Open", "Close"))
 
 
-def _import(source: Path, target: Path) -> None:
+def _import(source: Path, target: Path, plugins: Plugins) -> None:
     """Write a robot of another program as a study; what its file does not say is to be filled in.
 
     Raises
@@ -323,7 +325,8 @@ def _import(source: Path, target: Path) -> None:
     DesignerError
         If there is no such robot in the file, or the study cannot be written.
     """
-    from designer.foreign.study import ImportAnswers, read_foreign, study_text
+    from designer.foreign.study import ImportAnswers, load_importers, read_foreign, study_text
     from designer.io.output import write_file
 
-    write_file(target, study_text(read_foreign(source), ImportAnswers()))
+    importers, _ = load_importers(plugins)
+    write_file(target, study_text(read_foreign(source, importers=importers), ImportAnswers()))
