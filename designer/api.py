@@ -19,10 +19,9 @@ from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.arrays import FloatArray
 from designer.diagnosis.result import Diagnosis
 from designer.effects.load import load_effects
-from designer.errors import InputError, WrongValueError
+from designer.errors import InputError, NothingToExportError, WrongValueError
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.io import config
-from designer.io.output import output_folder
 from designer.io.results import read_result
 from designer.model.motion import limited, timed
 from designer.model.point_list import PointList
@@ -30,7 +29,7 @@ from designer.model.robot import Poses
 from designer.model.space import Orientations
 from designer.model.turning import EachPose
 from designer.model.workspace import Workspace
-from designer.plugins.find import find_plugins
+from designer.plugins import find_plugins
 from designer.progress import SILENT, Reporter
 from designer.report.render import write_report as write_analysis
 from designer.study import Study
@@ -269,21 +268,17 @@ def export(study: AnyStudy, to: str, path: Path | str) -> tuple[str, ...]:
     OutputError
         If it cannot be written.
     """
-    from designer.exports.formats import FORMATS
-    from designer.exports.robot import ExportedRobot
+    from designer.exports.formats import FORMATS, export_study
 
     if to not in FORMATS:
         raise WrongValueError("export", "to", f"to is {to!r}", ", ".join(FORMATS))
-    kind, target = FORMATS[to], Path(path)
+    kind, target, study = FORMATS[to], Path(path), _study(study)
     if not target.name.endswith(kind.ending):
         raise WrongValueError("export", "path", f"path is {target.name!r}", f"…{kind.ending}")
-    exported = ExportedRobot.of(_study(study), with_maps=kind.needs_maps)
-    if why_not := kind.why_not(exported):
-        raise InputError.at(exported.study.source.path, why_not)
-    with output_folder(target.parent) as building:
-        made = kind.write(exported, target.name.removesuffix(kind.ending))
-        for name, content in made.files.items():
-            (building / name).write_bytes(content)
+    try:
+        made = export_study(kind, target, study, load_catalogue(), SILENT)
+    except NothingToExportError as reason:
+        raise InputError.at(study.source.path, str(reason)) from None
     return tuple(made.lost)
 
 

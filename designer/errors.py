@@ -8,6 +8,7 @@
     ├── OutputError         the results cannot be written where asked (exit status 2)
     ├── NothingToExportError no cables or ropes serve the study (exit status 1)
     ├── MissingLibraryError the machine lacks what draws in space (exit status 2)
+    ├── PluginError         code of a plugin fails at work (exit status 2)
     └── EffectError         an effect that a plugin brought in fails at work (exit status 2)
 """
 
@@ -106,6 +107,10 @@ class NothingToExportError(DesignerError):
 
 class MissingLibraryError(DesignerError):
     """A library of the operating system is missing; the message names its package."""
+
+
+class PluginError(DesignerError):
+    """Code of a plugin fails at work; says whose it is, and what happened."""
 
 
 class EffectError(DesignerError):

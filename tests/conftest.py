@@ -23,7 +23,6 @@ from designer.io.config.schema import WorkspaceSection
 from designer.model.cable import Material
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
-from designer.plugins import examine
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_massless
 
@@ -171,7 +170,6 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     folder = tmp_path / "site"
     folder.mkdir()
     monkeypatch.syspath_prepend(folder)
-    monkeypatch.setattr(examine, "kept_folder", lambda: tmp_path / "kept")
     yield folder
     for name, module in list(sys.modules.items()):
         if (getattr(module, "__file__", None) or "").startswith(str(folder)):

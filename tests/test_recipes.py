@@ -21,7 +21,7 @@ from designer.model.requirement import Answer
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
-from designer.plugins.find import find_plugins
+from designer.plugins import find_plugins
 from designer.report.design.report import design_report
 from designer.report.figures.charts_shares import parts
 from designer.report.render import render_html

@@ -2,29 +2,20 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from designer.cli.options import Config, NoPlugins, catalogue_of, output_option, study_of
-from designer.errors import NothingToExportError
-
-
-class Target(StrEnum):
-    """The formats, as `designer.exports.formats.FORMATS` has them."""
-
-    CASPR = "caspr"
-    MOORDYN = "moordyn"
-    MUJOCO = "mujoco"
-    GLTF = "gltf"
-    CSV = "csv"
+from designer.errors import InputError, NothingToExportError
 
 
 def export(
     config: Config,
-    to: Annotated[Target, typer.Option("--to", help="For which program; see above.")],
+    to: Annotated[
+        str, typer.Option("--to", metavar="FORMAT", help="For which program; see above.")
+    ],
     output: Annotated[Path | None, output_option("CONFIG with the ending below", "FILE")] = None,
     no_plugins: NoPlugins = False,
 ) -> bool:
@@ -45,6 +36,8 @@ def export(
     gltf: what the report draws in space: robot, platform and cables in the reference pose and the
     worst one, the region with its maps, a scene each (.glb). Lost: all that is no picture.
 
+    Plugins may bring other formats.
+
     Numbers are of the robot as the declared effects have it, at rest under the loads of `robot`,
     with the ropes of the answer. What a study has and a file does not is told here and in the file.
 
@@ -54,15 +47,20 @@ def export(
     wrong or the format cannot hold such a robot, and nothing is written.
     """
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
-    from designer.exports.formats import FORMATS, export_study
+    from designer.exports.formats import export_study, load_formats
 
     study, plugins = study_of(config, no_plugins)
+    formats, problems = load_formats(plugins)
+    print_left_out(problems)
+    if to not in formats:
+        raise InputError.at("--to", f"there is no format {to!r}", f"one of {', '.join(formats)}")
+    kind = formats[to]
     catalogue = catalogue_of(study, plugins)
-    path = output or Path(f"{config.stem}{FORMATS[to.value].ending}")
+    path = output or Path(f"{config.stem}{kind.ending}")
     announce_compiling()
     try:
         with ProgressBars() as bars:
-            made = export_study(to.value, path, study, catalogue, bars)
+            made = export_study(kind, path, study, catalogue, bars)
     except NothingToExportError as reason:
         show(f"{reason}: see designer report.")
         return False

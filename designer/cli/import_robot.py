@@ -17,7 +17,7 @@ from designer.units import LENGTH, MASS, NUMBER, Dimension
 if TYPE_CHECKING:
     from designer.foreign.robot import ForeignRobot, Point
     from designer.foreign.study import Gap
-    from designer.plugins.find import Plugins
+    from designer.plugins import Plugins
 
 Vector = Any
 """Three numbers in one text; typer would have a tuple as three arguments."""
@@ -47,7 +47,7 @@ def _vector(name: str, text: str, dimension: Dimension) -> Any:
 
 
 def import_robot(
-    file: Annotated[Path, argument("FILE", "A CASPR model (.xml) or .wcrfx.")],
+    file: Annotated[Path, argument("FILE", "A CASPR model (.xml), .wcrfx or a plugin's file.")],
     output: Annotated[Path | None, output_option("FILE's name with .yaml", "CONFIG")] = None,
     other: Annotated[
         Path | None,
@@ -79,7 +79,7 @@ def import_robot(
     ] = None,
     no_plugins: NoPlugins = False,
 ) -> bool:
-    """Make a commented study of a robot in a file of CASPR or WireX.
+    """Make a commented study of a robot in a file of CASPR, of WireX, or of a plugin's kind.
 
     CASPR keeps a model in two files, NAME_bodies.xml and NAME_cables.xml: name either. What neither
     the file nor an option says is marked 'fill in', and told.
@@ -89,17 +89,27 @@ def import_robot(
     Exit status 0: the study is whole. 1: it is written, and something is to be filled in. 2: the
     input is wrong or no study can hold such a robot, and nothing is written.
     """
-    from designer.foreign.study import ImportAnswers, gaps, read_foreign, study_text
+    from designer.cli.terminal import print_left_out
+    from designer.foreign.study import (
+        ImportAnswers,
+        gaps,
+        load_importers,
+        read_foreign,
+        study_text,
+    )
     from designer.io.output import write_new_file
-    from designer.plugins.find import find_plugins
+    from designer.plugins import find_plugins
 
-    robot = read_foreign(file, other, cable_set)
+    plugins = find_plugins(with_plugins=not no_plugins)
+    importers, problems = load_importers(plugins)
+    print_left_out([*plugins.problems, *problems])
+    robot = read_foreign(file, other, cable_set, importers)
     answers = ImportAnswers(mass, payload, centre_of_mass, pose, gravity, grade, safety_factor)
     text = study_text(robot, answers)
     missing = gaps(text)
     stem = file.stem.removesuffix("_bodies").removesuffix("_cables")
     path = output or Path(f"{stem}.yaml")
-    _require_valid(text, missing, robot, path, find_plugins(with_plugins=not no_plugins))
+    _require_valid(text, missing, robot, path, plugins)
     write_new_file(path, text)
     _tell(path, robot, missing)
     return not missing

@@ -68,10 +68,11 @@ def optimise(
         with ends_gently() as stop:
             optimum = optimum_of(laid_out, bars, stop)
         write_optimum(optimum, building, folder, template, bars)
+        problems: list[str] = []
         for place, analysis in zip(places, (optimum.given, optimum.optimised), strict=True):
-            write_report_files(analysis, place, template, bars)
+            problems += write_report_files(analysis, place, template, bars)
         written = file_names(building)
-    print_left_out(filter(None, [why_no_scenes()]))
+    print_left_out(dict.fromkeys(filter(None, [why_no_scenes(), *problems])))
     _print_summary(optimum)
     text = f"{folder}: {', '.join(written)}; full reports in given and optimised"
     show(text, markup=False)

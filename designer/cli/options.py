@@ -18,7 +18,7 @@ from designer.units import Dimension, QuantityError, read_quantity
 
 if TYPE_CHECKING:
     from designer.grades.registry import Catalogue
-    from designer.plugins.find import Plugins
+    from designer.plugins import Plugins
     from designer.study import Study
 
 NEGATIVE_ANSWER = 1
@@ -118,7 +118,7 @@ def study_of(
     from designer.cli.terminal import print_left_out
     from designer.effects.load import load_effects
     from designer.io.config import read_study
-    from designer.plugins.find import find_plugins
+    from designer.plugins import find_plugins
 
     plugins = plugins or find_plugins(with_plugins=not no_plugins)
     effects = load_effects(plugins)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from designer.diagnosis.plan import Plan
     from designer.model.cable import Cable
     from designer.model.measurements import Measurements
-    from designer.plugins.find import Plugins
+    from designer.plugins import Plugins
     from designer.study import Study
 
 

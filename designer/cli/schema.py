@@ -53,7 +53,7 @@ def _text(no_plugins: bool) -> str:
     from designer.cli.terminal import print_left_out
     from designer.effects.load import load_effects
     from designer.io.config.json_schema import schema_text
-    from designer.plugins.find import find_plugins
+    from designer.plugins import find_plugins
 
     effects = load_effects(find_plugins(with_plugins=not no_plugins))
     print_left_out(effects.problems)

@@ -77,10 +77,10 @@ def _opengl() -> str:
 
 
 def _plugins() -> Iterator[tuple[str, str]]:
-    from designer.plugins.find import OWN_NAMES, find_plugins
+    from designer.plugins import OWN_NAMES, find_plugins
 
     plugins = find_plugins()
-    foreign = [plugin for plugin in plugins.found if plugin.name not in OWN_NAMES]
+    foreign = [plugin for plugin in plugins.loaded if plugin.name not in OWN_NAMES]
     for plugin in foreign:
         yield f"plugin {plugin.name}", plugin.source
     for problem in plugins.problems:

@@ -21,6 +21,7 @@ from typing import Any, BinaryIO
 from designer.errors import InputError
 
 LARGEST_FILE_BYTES = 1_000_000
+_MOST_MEMORY_BYTES = 2 << 30
 _START = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
     "from designer.documents.opened import answer; answer(*json.loads(sys.argv[2]))"
@@ -115,10 +116,13 @@ def apart(read: Callable[..., Any], content: bytes, longest_s: int, *options: ob
 
 def answer(module: str, function: str, longest_s: int, *options: object) -> None:
     """Answer `apart`, in its process."""
-    from designer.plugins.child import limit
-
     read = getattr(import_module(module), function)
-    limit(2 << 30, longest_s)
+    with suppress(ImportError, ValueError, OSError):  # Windows has no limits, macOS not all
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_CPU, (longest_s, longest_s))
+        resource.setrlimit(resource.RLIMIT_AS, (_MOST_MEMORY_BYTES, _MOST_MEMORY_BYTES))
     print(json.dumps(read(sys.stdin.buffer.read(), *options)))
 
 

@@ -29,8 +29,7 @@ from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.model.measurements import POSES
 from designer.model.robot import Platform, Poses, Robot
-from designer.plugins.find import OWN_NAMES, Offer, Plugins, ask
-from designer.plugins.guard import attempt
+from designer.plugins import OWN_NAMES, Offer, Plugins, attempt, call_hook
 from designer.units import Dimension, QuantityError, read_quantity
 
 RESERVED_IDS = frozenset({ALL_ANCHORS, ALL_ATTACHMENTS, POSES, "cable"})
@@ -205,7 +204,7 @@ def load_effects(plugins: Plugins) -> KnownEffects:
 
     A plugin that fails, or an effect that is faulty, is left out and reported in ``problems``.
     """
-    offers, failures = ask(plugins, "register_effects")
+    offers, failures = call_hook(plugins, "register_effects")
     problems = [*plugins.problems, *failures]
     origins: dict[str, str] = {}
     effects: list[Effect] = []

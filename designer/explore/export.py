@@ -134,9 +134,9 @@ def _lengths(question: Question, reporter: Reporter, target: Path, poses: Path |
 
 def _for_program(question: Question, reporter: Reporter, name: str, target: Path) -> Written:
     """Write the study for another program, as `designer export` does."""
-    from designer.exports.formats import export_study
+    from designer.exports.formats import FORMATS, export_study
 
-    made = export_study(name, target, question.study, question.catalogue, reporter)
+    made = export_study(FORMATS[name], target, question.study, question.catalogue, reporter)
     lost = tuple(f"Not in it: {line}" for line in made.lost)
     return Written(tuple(target.parent / file for file in made.files), lost)
 

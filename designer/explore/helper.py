@@ -34,7 +34,7 @@ from designer.explore.question import (
 )
 from designer.explore.reading import Context
 from designer.io.process import SPAWN, end_with_parent, settle_in
-from designer.plugins.find import find_plugins
+from designer.plugins import find_plugins
 
 _GRACE_S = 3.0
 """How long a process may take to clear away what it has half-written."""

@@ -22,7 +22,7 @@ from designer.model.cable import Cable, Cables, Material
 from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
-from designer.plugins.find import Plugins
+from designer.plugins import Plugins
 from designer.progress import Advance
 from designer.selection.candidate import Candidate, candidates_of
 from designer.selection.cases import FEW_AT_FIRST

@@ -20,7 +20,7 @@ from designer.explore.question import Rope, RopePerCable
 from designer.io.config.moved import moved_to
 from designer.io.config.reader import checked, study_of
 from designer.io.config.schema import StudySection
-from designer.plugins.find import Plugins
+from designer.plugins import Plugins
 from designer.study import Study
 
 _SHORTHAND = {"pose": "position"}

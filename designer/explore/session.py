@@ -26,7 +26,7 @@ from designer.explore.reading import (
     with_entry,
 )
 from designer.io.output import write_file
-from designer.plugins.find import Plugins
+from designer.plugins import Plugins
 from designer.resources import example_file, example_names
 from designer.study import Study
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from designer.errors import InputError, NothingToExportError
+from designer.errors import DesignerError, InputError, NothingToExportError
 from designer.exports.caspr import to_caspr
 from designer.exports.gltf import to_gltf
 from designer.exports.moordyn import to_moordyn
@@ -15,6 +15,7 @@ from designer.exports.robot import Export, ExportedRobot
 from designer.exports.workshop import to_csv
 from designer.grades.registry import Catalogue
 from designer.io.output import output_folder, require_file
+from designer.plugins import Plugins, named, registered
 from designer.progress import Reporter
 from designer.study import Study
 
@@ -25,6 +26,8 @@ class Format:
 
     Parameters
     ----------
+    name : str
+        As `designer export --to` takes it.
     write : callable
         From the robot and the stem of the files' names to the files.
     ending : str
@@ -35,32 +38,48 @@ class Format:
         Whether it shows maps of the workspace.
     """
 
+    name: str
     write: Callable[[ExportedRobot, str], Export]
     ending: str
     needs_cables: bool = True
     needs_ropes: bool = False
     needs_maps: bool = False
 
-    def why_not(self, exported: ExportedRobot) -> str:
-        """Say why there is nothing to write; empty where there is."""
-        if self.needs_ropes and not exported.has_ropes():
-            return "No rope serves this study, so there is nothing to cut: see designer report."
-        if self.needs_cables and exported.design is None:
-            return "No cable serves this study, so there is nothing to write: see designer report."
-        return ""
-
 
 FORMATS = {
-    "caspr": Format(to_caspr, "_bodies.xml", needs_cables=False),
-    "moordyn": Format(to_moordyn, ".txt"),
-    "mujoco": Format(to_mujoco, ".xml"),
-    "gltf": Format(to_gltf, ".glb", needs_maps=True),
-    "csv": Format(to_csv, ".csv", needs_ropes=True),
+    form.name: form
+    for form in (
+        Format("caspr", to_caspr, "_bodies.xml", needs_cables=False),
+        Format("moordyn", to_moordyn, ".txt"),
+        Format("mujoco", to_mujoco, ".xml"),
+        Format("gltf", to_gltf, ".glb", needs_maps=True),
+        Format("csv", to_csv, ".csv", needs_ropes=True),
+    )
 }
+"""Our own formats."""
+
+
+def load_formats(plugins: Plugins) -> tuple[dict[str, Format], list[str]]:
+    """Return our own formats and those of plugins, and a line for each that is left out."""
+    formats, problems = registered(
+        plugins, "register_exporters", Format, lambda form: form.name, FORMATS
+    )
+    return FORMATS | {name: _guarded(*item) for name, item in formats.items()}, problems
+
+
+def _guarded(form: Format, label: str) -> Format:
+    def write(robot: ExportedRobot, stem: str) -> Export:
+        with named(label, f"fails in writing {form.name}", DesignerError):
+            made = form.write(robot, stem)
+            if not isinstance(made, Export):
+                raise TypeError(f"it returned {type(made).__name__}, not an Export")
+        return made
+
+    return replace(form, write=write)
 
 
 def export_study(
-    name: str, path: Path, study: Study, catalogue: Catalogue, reporter: Reporter
+    kind: Format, path: Path, study: Study, catalogue: Catalogue, reporter: Reporter
 ) -> Export:
     """Write a study for another program, into a file and what belongs beside it.
 
@@ -73,10 +92,9 @@ def export_study(
     OutputError
         If a file cannot be written.
     """
-    kind = FORMATS[name]
     if not path.name.endswith(kind.ending):
         expected = f"a name that ends in {kind.ending}"
-        raise InputError.at("--output", f"{path} is no file of {name}", expected)
+        raise InputError.at("--output", f"{path} is no file of {kind.name}", expected)
     with output_folder(path.parent) as building:
         require_file(path)  # what is in the way shows before the work
         exported = ExportedRobot.of(study, catalogue, reporter, with_maps=kind.needs_maps)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from designer.documents.xml import Element
 
@@ -104,3 +106,11 @@ def moved(point: Point, by: Point) -> Point:
     """Return the sum of two vectors."""
     x, y, z = (component + shift for component, shift in zip(point, by, strict=True))
     return x, y, z
+
+
+@dataclass(frozen=True, slots=True)
+class Importer:
+    """What reads a kind of file; `designer.errors.InputError` from it is shown as it stands."""
+
+    ending: str  #: of the files' names, such as ``.points``
+    read: Callable[[Path], ForeignRobot]

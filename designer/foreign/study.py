@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
 from designer.documents.xml import read_xml
-from designer.errors import InputError
+from designer.errors import DesignerError, InputError
 from designer.foreign import caspr, wirex
-from designer.foreign.robot import ForeignRobot, Point
+from designer.foreign.robot import ForeignRobot, Importer, Point
+from designer.plugins import Plugins, named, registered
 from designer.units import DENSITY, FORCE, MASS, STRESS, format_SI
 
 FILL_IN = "fill in"
+OWN_ENDINGS = (".xml", ".wcrfx")
+Importers = Mapping[str, tuple[Importer, str]]
+"""Those of plugins, by the ending of their files, each with its plugin's label."""
 _DOWN = (0.0, 0.0, -1.0)
 _FIGURES = "density, youngs_modulus and allowable_stress"
 
@@ -270,10 +275,20 @@ def _list(values: tuple[float, ...]) -> str:
     return f"[{', '.join(map(_number, values))}]"
 
 
+def load_importers(plugins: Plugins) -> tuple[Importers, list[str]]:
+    """Return the importers of plugins for `read_foreign`, and a line for each that is left out."""
+    return registered(
+        plugins, "register_importers", Importer, lambda importer: importer.ending, OWN_ENDINGS
+    )
+
+
 def read_foreign(
-    path: Path, other: Path | None = None, cable_set: str | None = None
+    path: Path,
+    other: Path | None = None,
+    cable_set: str | None = None,
+    importers: Importers = MappingProxyType({}),
 ) -> ForeignRobot:
-    """Return the robot of a CASPR model (either file of it) or of a WireX file.
+    """Return the robot of a CASPR model (either file of it), a WireX file or a plugin's file.
 
     Parameters
     ----------
@@ -283,12 +298,23 @@ def read_foreign(
         The other file of a CASPR model; None for the one beside it.
     cable_set : str or None
         Which set of cables of a CASPR model; None for the file's default.
+    importers : mapping of str to tuple
+        Those of plugins; see `load_importers`.
 
     Raises
     ------
     InputError
         If a file is missing or faulty, is of another kind, or no study can hold such a robot.
+    PluginError
+        If a plugin fails.
     """
+    for ending, (importer, label) in importers.items():
+        if path.name.endswith(ending):
+            with named(label, f"fails in reading {path}", DesignerError):
+                robot = importer.read(path)
+                if not isinstance(robot, ForeignRobot):
+                    raise TypeError(f"it returned {type(robot).__name__}, not a ForeignRobot")
+            return robot.as_point_mass()
     root = read_xml(path)
     if root.tag in caspr.ROOTS:
         return caspr.read_caspr(path, root, other, cable_set).as_point_mass()

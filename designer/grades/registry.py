@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import difflib
+import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from hashlib import sha256
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,8 +19,7 @@ from designer.errors import Fault, InputError, described, one_line
 from designer.grades.checks import find_flaws
 from designer.grades.files import id_fault, read_grades
 from designer.grades.grade import Grade
-from designer.grades.plain import Misfit
-from designer.plugins.find import OWN_NAMES, Offer, Plugins, ask, find_plugins
+from designer.plugins import OWN_NAMES, Offer, Plugins, call_hook, find_plugins
 
 if TYPE_CHECKING:
     from designer.model.price_list import PriceList
@@ -167,7 +168,7 @@ def load_catalogue(
     """
     if plugins is None:
         plugins = find_plugins(with_plugins)
-    offers, failures = ask(plugins, "register_grades")
+    offers, failures = call_hook(plugins, "register_grades")
     shelf = _Shelf(problems=[*plugins.problems, *failures])
     for offer in offers:
         shelf.add_offer(offer)
@@ -280,10 +281,10 @@ def _grades_in(item: object, complain: Callable[[str], None], is_own: bool) -> l
     """
     if isinstance(item, Grade):
         return [item] if is_own else _sound(item, complain)
-    if not isinstance(item, Path):
-        complain(item.problem if isinstance(item, Misfit) else f"{item!r} is no grade")
+    if not isinstance(item, str | PathLike):
+        complain(f"register_grades() gave {type(item).__name__}, not a path or a Grade")
         return []
-    path = item
+    path = Path(os.fsdecode(item))
     if not path.is_absolute():
         complain(f"register_grades() gave the relative path {str(path)!r}")
         return []
@@ -295,6 +296,7 @@ def _grades_in(item: object, complain: Callable[[str], None], is_own: bool) -> l
 
 def _sound(grade: Grade, complain: Callable[[str], None]) -> list[Grade]:
     try:
+        hash(grade)  # no lists, where tuples belong
         flaws = find_flaws(grade)
     except Exception as error:  # a grade made in Python may hold values of any type
         complain(f"a Grade is not usable: {described(error)}")

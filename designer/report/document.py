@@ -93,6 +93,8 @@ class Report:
         Why pictures in space are left out, and what to install; empty where they are not.
     control : Control
         Number, revision, names, logo, digests.
+    problems : tuple of str
+        Which sections of plugins are left out and why, one line each.
     """
 
     name: str
@@ -104,6 +106,7 @@ class Report:
     sections: tuple[Section, ...]
     missing: str = ""
     control: Control = NO_CONTROL
+    problems: tuple[str, ...] = ()
 
     @classmethod
     def of(
@@ -117,6 +120,7 @@ class Report:
         version: str = __version__,
         missing: str = "",
         control: Control = NO_CONTROL,
+        problems: Iterable[str] = (),
     ) -> Report:
         """Return a report; sections that are None are left out."""
         return cls(
@@ -129,6 +133,7 @@ class Report:
             tuple(section for section in sections if section is not None),
             missing,
             control,
+            tuple(problems),
         )
 
     def section(self, section_id: str) -> Section:

@@ -74,6 +74,8 @@ def rendered(
     """
     from markupsafe import Markup
 
+    if section.body:  # that of a plugin
+        return section
     templates = templates or environment()
     name = f"{'report' if report is None else report.name}/{section.id}.html.j2"
     variables = {**section.context, "section": section, "report": report, "paged": paged}
@@ -149,12 +151,16 @@ def write_report_files(
     reporter: Reporter = SILENT,
     *,
     quick: bool = False,
-) -> None:
-    """Write the report and all results into an existing folder; ``quick``, page 1 alone."""
+) -> tuple[str, ...]:
+    """Write the report and all results into an existing folder; ``quick``, page 1 alone.
+
+    Returns a line for each section of a plugin that is left out.
+    """
     report = design_report(analysis, quick=quick)
     write_pages(report, folder, templates, reporter, with_pdf=not quick)
     if not quick:
         write_results(analysis, folder)
+    return report.problems
 
 
 def write_pages(

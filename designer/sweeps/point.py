@@ -19,7 +19,7 @@ from designer.errors import DesignerError, InputError, described
 from designer.grades.registry import Catalogue, kept_catalogue
 from designer.io.config.reader import checked, study_of
 from designer.model.verdict import Verdict
-from designer.plugins.find import Plugins, find_plugins
+from designer.plugins import Plugins, find_plugins
 from designer.spelling import did_you_mean
 from designer.study import Study
 

@@ -19,7 +19,7 @@ from designer.explore.session import Session
 from designer.model.cable import Attached
 from designer.model.drum import Drum
 from designer.model.requirement import Answer
-from designer.plugins.find import find_plugins
+from designer.plugins import find_plugins
 from designer.report.design.report import design_report
 from designer.report.render import render_html
 

@@ -34,7 +34,7 @@ from designer.errors import DesignerError
 from designer.grades.files import read_grade
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.io.config import read_study
-from designer.plugins.find import find_plugins
+from designer.plugins import find_plugins
 from designer.progress import Silent
 from designer.resources import data_folder, example_file, example_names
 from designer.study import Study

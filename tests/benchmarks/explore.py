@@ -29,7 +29,7 @@ from designer.explore.map import MapAnswer
 from designer.explore.question import Message, Rope
 from designer.explore.session import Session
 from designer.explore.worker import Worker
-from designer.plugins.find import find_plugins
+from designer.plugins import find_plugins
 from designer.report.render import write_report
 from designer.resources import example_file
 

@@ -11,7 +11,7 @@ import pytest
 from designer.explore.question import Message, Question
 from designer.explore.session import Session
 from designer.explore.worker import Worker
-from designer.plugins.find import Plugins, find_plugins
+from designer.plugins import Plugins, find_plugins
 from designer.resources import example_file
 
 LONGEST_WAIT_S = 120.0

@@ -22,7 +22,7 @@ from designer.explore.ropes import full_ropes, quick_ropes, ropes_of
 from designer.explore.session import Session
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
-from designer.plugins.find import Plugins
+from designer.plugins import Plugins
 from designer.proof.prove import WITHIN
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging

@@ -12,7 +12,7 @@ import pytest
 from designer.explore.fields import Field, keys_of
 from designer.explore.session import Session
 from designer.explore.sliders import count_slider
-from designer.plugins.find import Plugins
+from designer.plugins import Plugins
 from designer.resources import example_names
 from designer.units import read_quantity
 

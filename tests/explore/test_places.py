@@ -20,7 +20,7 @@ from designer.explore.map import values_at, worst_answer
 from designer.explore.question import Question, Rope
 from designer.explore.ropes import full_ropes
 from designer.explore.session import Session
-from designer.plugins.find import Plugins
+from designer.plugins import Plugins
 
 WIRE = "pairs-wire"
 

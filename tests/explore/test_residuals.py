@@ -15,7 +15,7 @@ from designer.explore.question import Question
 from designer.explore.session import Session
 from designer.model.cable import Cable
 from designer.model.robot import Poses
-from designer.plugins.find import Plugins
+from designer.plugins import Plugins
 from designer.statics.inverse import solve_sagging
 
 OFFSET_M = (0.02, -0.03, 0.05)

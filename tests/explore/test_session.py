@@ -14,7 +14,7 @@ from designer.errors import InputError, OutputError
 from designer.explore.fields import Field
 from designer.explore.question import Rope
 from designer.explore.session import Session
-from designer.plugins.find import Plugins
+from designer.plugins import Plugins
 from designer.resources import data_folder, example_file, example_names
 
 MASS = "robot.platform.mass"

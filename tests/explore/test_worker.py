@@ -24,7 +24,7 @@ from designer.explore.question import Long, Question, Quick, Request, Rope, fail
 from designer.explore.ropes import Ropes, full_ropes
 from designer.explore.session import Session
 from designer.model.robot import Poses
-from designer.plugins.find import Plugins, find_plugins
+from designer.plugins import Plugins, find_plugins
 from designer.progress import checkpoint, interrupted_by
 from designer.resources import example_file
 from designer.statics.inverse import solve_sagging
@@ -178,7 +178,7 @@ def test_too_few_cables_are_told(asker: Any, tmp_path: Path, no_plugins: Plugins
 
 @pytest.mark.slow
 def test_an_effect_of_a_plugin_that_fails_is_told(asker: Any, tmp_path: Path, site: Path) -> None:
-    from designer.plugins.find import find_plugins
+    from designer.plugins import find_plugins
 
     (site / "frail.py").write_text(
         "from designer.effects.effect import Effect, Parameter, Size\n"

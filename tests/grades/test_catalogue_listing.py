@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-import json
-
 import pytest
 from grade_samples import GRADE_TEXT, write_grade
 
@@ -12,7 +10,6 @@ from designer.grades.listing import (
     split_nominal,
     summary,
 )
-from designer.grades.plain import from_plain, to_plain
 from designer.grades.registry import load_catalogue
 
 
@@ -114,11 +111,6 @@ def test_facts_have_what_is_known_of_the_rope_at_work_and_name_the_rest():
     assert fibre["creep"].startswith("high")
     assert nominal["permanent stretch"].startswith("0.25 %")
     assert nominal["not given"] == "rotation, discard"
-
-
-def test_every_shipped_grade_comes_back_from_plain_data():
-    for grade in load_catalogue((), with_plugins=False).grades:
-        assert from_plain(json.loads(json.dumps(to_plain(grade)))) == grade
 
 
 def test_products_and_nominal_grades_are_told_apart_and_counted():

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from designer.grades import registry
 from designer.grades.registry import kept_catalogue, load_catalogue
-from designer.plugins.find import find_plugins
+from designer.plugins import find_plugins
 
 
 def test_it_is_read_anew_for_other_plugins_and_changed_files_only(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ from designer.errors import EffectError, InputError
 from designer.io.config import read_study
 from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
-from designer.plugins.find import find_plugins
+from designer.plugins import find_plugins
 from designer.study import Study, as_built_by, declared_settings
 
 DRIFT = """
@@ -112,7 +112,7 @@ def test_those_of_a_plugin_act_after_ours(site) -> None:
 @pytest.mark.slow
 def test_a_plugin_may_bring_grades_and_effects(site) -> None:
     install_plugin(site, "acme-both", plugin(DRIFT) + hook("return []"))
-    (both,) = (p for p in find_plugins().found if p.name == "acme-both")
+    (both,) = (p for p in find_plugins().loaded if p.name == "acme-both")
     assert {*both.hooks} == {"register_grades", "register_effects"}
     assert "load_cell_drift" in known().by_id
 
@@ -298,6 +298,8 @@ def test_a_faulty_effect_is_one_line_and_the_rest_works(site, item, words) -> No
 @pytest.mark.parametrize(
     ("code", "words"),
     [
+        (hook("import sys; sys.exit(2)", "register_effects"), "register_effects(): SystemExit: 2"),
+        ("import sys; sys.exit(1)", "cannot be loaded: SystemExit: 1"),
         ("import nothing_of_the_kind", "cannot be loaded: ModuleNotFoundError"),
         (hook("raise KeyError('x')", "register_effects"), "fails in register_effects(): KeyError"),
         (hook("return 5", "register_effects"), "it returned int, not a list"),
@@ -366,7 +368,11 @@ def test_a_law_that_fails_at_work_is_left_out_of_the_diagnosis(site, tmp_path, l
 @pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize(
     ("law", "words"),
-    [("lambda m, v: v['mass']", "KeyError: 'mass'"), ("lambda m, v: m.robot", "returned Robot")],
+    [
+        ("lambda m, v: exit(3)", "acme-broken 1.2.: effect 'lost_ballast' .* SystemExit: 3"),
+        ("lambda m, v: v['mass']", "KeyError: 'mass'"),
+        ("lambda m, v: m.robot", "returned Robot"),
+    ],
 )
 def test_a_declared_effect_that_fails_at_work_stops_with_one_line(
     site, tmp_path, law, words

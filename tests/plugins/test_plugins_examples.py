@@ -8,6 +8,7 @@ import pytest
 from wheels import install
 
 from designer.grades.registry import load_catalogue
+from designer.plugins import HOOKS, find_plugins
 
 PLUGINS = Path(__file__).parents[2] / "plugins"
 
@@ -25,3 +26,11 @@ def test_an_example_is_installed_and_its_grades_are_known(site, folder, grade_id
     catalogue = load_catalogue()
     assert catalogue.problems == ()
     assert catalogue.grade(grade_id).origin == folder
+
+
+@pytest.mark.slow
+def test_the_example_of_every_hook_is_installed_and_loads(site) -> None:
+    install(PLUGINS / "every-hook", site)
+    (plugin,) = (p for p in find_plugins().loaded if p.name == "every-hook")
+    assert plugin.source == "cdpr-designer-every-hook 0.1.0"
+    assert {*plugin.hooks} == {*HOOKS} - {"register_grades", "register_effects"}

@@ -17,7 +17,7 @@ from designer.errors import InputError, OutputError
 from designer.grades.registry import CatalogueSource, load_catalogue
 from designer.io.config import read_study
 from designer.model.cable import Cable
-from designer.plugins.find import find_plugins
+from designer.plugins import find_plugins
 from designer.progress import Silent
 from designer.resources import data_folder
 from designer.study import as_built_by

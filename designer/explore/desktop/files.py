@@ -23,7 +23,7 @@ from designer.resources import example_file
 if TYPE_CHECKING:
     from designer.explore.export import OptimisedStudy, What, Written
     from designer.explore.session import Session
-    from designer.plugins.find import Plugins
+    from designer.plugins import Plugins
 
 _STUDIES = "Studies (*.yaml *.yml);;All files (*)"
 _ROBOTS = "Robots of CASPR and WireX (*.xml *.wcrfx);;All files (*)"
@@ -88,7 +88,7 @@ class Files(QObject):
 
     @cached_property
     def _plugins(self) -> Plugins:
-        from designer.plugins.find import find_plugins
+        from designer.plugins import find_plugins
 
         return find_plugins(self._with_plugins)
 
@@ -113,7 +113,9 @@ class Files(QObject):
         stem = source.stem.removesuffix("_bodies").removesuffix("_cables")
         start = str(source.with_name(f"{stem}.yaml"))
         name, _ = QFileDialog.getSaveFileName(self._parent, "Save the study as", start, _STUDIES)
-        if name and self._succeeds(lambda: _import(source, Path(name)), "Not imported"):
+        if name and self._succeeds(
+            lambda: _import(source, Path(name), self._plugins), "Not imported"
+        ):
             self.open(Path(name))
 
     def open(self, path: Path) -> None:
@@ -352,7 +354,7 @@ class Files(QObject):
         self.notice.emit(f"{main.name} is in {main.parent}.", ("Open", "Close"))
 
 
-def _import(source: Path, target: Path) -> None:
+def _import(source: Path, target: Path, plugins: Plugins) -> None:
     """Write a robot of another program as a study; what its file does not say is to be filled in.
 
     Raises
@@ -360,7 +362,8 @@ def _import(source: Path, target: Path) -> None:
     DesignerError
         If there is no such robot in the file, or the study cannot be written.
     """
-    from designer.foreign.study import ImportAnswers, read_foreign, study_text
+    from designer.foreign.study import ImportAnswers, load_importers, read_foreign, study_text
     from designer.io.output import write_file
 
-    write_file(target, study_text(read_foreign(source), ImportAnswers()))
+    importers, _ = load_importers(plugins)
+    write_file(target, study_text(read_foreign(source, importers=importers), ImportAnswers()))

@@ -29,7 +29,7 @@ from designer.model.price_list import PriceList
 from designer.model.region import Region
 from designer.model.robot import Robot
 from designer.model.space import Orientations
-from designer.plugins.find import Plugins, find_plugins
+from designer.plugins import Plugins, find_plugins
 from designer.study import DeclaredEffect, Entry, GradeFamily, Study, StudySource
 from designer.units import DENSITY, NUMBER, STRESS, Dimension, format_SI
 

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
+from functools import partial
+from types import FunctionType
+
+from markupsafe import Markup
 
 from designer.analysis.analyse import Analysis
+from designer.plugins import attempt, command_name, find_plugins, registered
 from designer.report.design import carries, contexts, pose, selection, workspace
 from designer.report.design.contexts import Context, shared
 from designer.report.design.drawings import Drawings
@@ -68,16 +73,45 @@ def design_report(analysis: Analysis, *, draws: bool = True, quick: bool = False
     return report_from(Drawings(analysis, draws, why_no_scenes() if draws else ""))
 
 
-def report_from(drawings: Drawings, sections: Iterable[str] = dict(SECTIONS)) -> Report:
+def report_from(drawings: Drawings, sections: Sequence[str] = tuple(dict(SECTIONS))) -> Report:
     """Return the report from its figures, and from what they show."""
     analysis = drawings.analysis
+    shown = [section(drawings, section_id) for section_id in sections]
+    problems: list[str] = []
+    if "left-out" in sections:  # the first section that is about the report itself
+        extra, problems = plugin_sections(analysis)
+        last = [*sections].index("left-out")
+        shown[last:last] = extra
     return Report.of(
         "report",
         analysis.study.name,
         "Cable design report",
         analysis.provenance.created,
-        (section(drawings, section_id) for section_id in sections),
+        shown,
         version=analysis.provenance.version,
         missing=drawings.missing,
         control=control_of(analysis.study, analysis.catalogue),
+        problems=problems,
     )
+
+
+def plugin_sections(analysis: Analysis) -> tuple[list[Section], list[str]]:
+    """Return the sections of plugins, and a line for each that is left out."""
+    plugins = find_plugins(analysis.catalogue.with_plugins)
+    functions, problems = registered(
+        plugins, "register_report_sections", FunctionType, command_name, dict(SECTIONS)
+    )
+    sections = []
+    for section_id, (function, label) in functions.items():
+        filled = partial(_plugin_section, section_id, function, analysis)
+        section = attempt(filled, label, f"fails in the section {section_id}", problems)
+        sections += [] if section is None else [section]
+    return sections, problems
+
+
+def _plugin_section(section_id: str, function: FunctionType, analysis: Analysis) -> Section | None:
+    if (answer := function(analysis)) is None:
+        return None
+    title, body = answer
+    html = body if isinstance(body, Markup) else Markup("<p>{}</p>").format(body)
+    return Section(section_id, title=str(title), body=html)
