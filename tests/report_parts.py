@@ -165,7 +165,7 @@ def page(part: object, name: str = "report") -> str:
     if part is None:
         return ""
     if isinstance(part, Section):
-        stub: Any = SimpleNamespace(name=name)
+        stub: Any = SimpleNamespace(name=name, sections=())
         return part.body or rendered(part, stub).body
     if isinstance(part, Report):
         return "\n".join(rendered(section, part).body for section in part.sections)

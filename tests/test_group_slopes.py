@@ -16,7 +16,7 @@ from designer.model.cable import Cable, Cables
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
-from designer.report.design import carries
+from designer.report.design import sections
 from designer.report.document import Section
 from designer.report.render import rendered
 from designer.selection.assignment import Assignment, GroupVerification
@@ -116,7 +116,7 @@ def test_slopes_of_groups_are_those_of_differences(
 
 def test_report_shows_them(found: tuple[Sensitivities, ...]) -> None:
     analysis: Any = SimpleNamespace(carries=None, group_slopes=found)
-    page = rendered(Section("carries", context=carries.sensitivities(analysis) or {})).body
+    page = rendered(Section("carries", context=sections.sensitivities(analysis) or {})).body
     cells = re.findall(r"<td[^>]*>([^<]*)</td>", page)
     now = cells.index("Utilisation now")
     assert cells[now + 2].startswith(f"{100 * found[0].utilisation:.1f}")

@@ -13,7 +13,7 @@ from designer.grades.grade import Grade
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.proof.prove import Proof
-from designer.report.design.contexts import proof_statement
+from designer.report.design.sections import proof_statement
 from designer.resources import example_file
 from designer.selection.cases import CaseResult
 from designer.selection.select import select

@@ -14,7 +14,7 @@ from report_parts import cells, facts, first_page, said, table, tables, texts
 
 from designer.analysis.analyse import Analysis
 from designer.report import format as fmt
-from designer.report.design import pose
+from designer.report.design import sections
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import design_report
 from designer.report.design.report import section as section_of
@@ -143,7 +143,7 @@ def test_a_loop_that_diverges_is_said_to(solve: Callable[[str], Analysis]) -> No
 
 def test_a_loop_that_does_not_settle_is_cut_short() -> None:
     turns_of_400 = tuple(Iterate(1e3 * k, 0.01) for k in range(401))
-    shown: Any = pose.iterations(LoopSizing(turns_of_400, has_converged=False))["shown"]
+    shown: Any = sections.iterations(LoopSizing(turns_of_400, has_converged=False))["shown"]
     numbers = [number for number, iterate, _ in shown if iterate is not None]
     assert numbers == [0, 1, 2, 3, 4, 398, 399, 400]
     assert len(shown) == 9  # with a row for what is between

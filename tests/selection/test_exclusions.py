@@ -24,7 +24,7 @@ from designer.explore.ropes import ropes_of
 from designer.io.config.reader import read_study
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
-from designer.report.design.selection import selection as context
+from designer.report.design.sections import selection as context
 from designer.report.figures.charts_selection import candidates_chart
 from designer.resources import example_file
 from designer.selection.result import SelectionResult

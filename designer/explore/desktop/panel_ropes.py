@@ -22,7 +22,7 @@ from designer.explore.desktop.widgets import (
     result,
 )
 from designer.report import format as fmt
-from designer.report.design.contexts import proof_statement
+from designer.report.design.sections import proof_statement
 
 if TYPE_CHECKING:
     from designer.explore.question import Rope, RopePerCable

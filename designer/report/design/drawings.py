@@ -10,8 +10,7 @@ import numpy as np
 from designer.analysis.analyse import Analysis
 from designer.analysis.maps import WorkspaceMaps, rope_maps, workspace_maps
 from designer.report import format as fmt
-from designer.report.design.carries import STEP_M, shares_of_inputs, slopes_of_moves
-from designer.report.design.pose import weight_effect
+from designer.report.design.sections import STEP_M, shares_of_inputs, slopes_of_moves, weight_effect
 from designer.report.document import Drawing, in_space, vector
 from designer.report.figures.charts_edge import edge_chart
 from designer.report.figures.charts_path import bending_chart, path_chart

@@ -1,4 +1,4 @@
-"""The design report: its sections, one file each, in the order in which they are shown."""
+"""The design report: its sections in the order in which they are shown."""
 
 from __future__ import annotations
 
@@ -10,36 +10,36 @@ from markupsafe import Markup
 
 from designer.analysis.analyse import Analysis
 from designer.plugins import attempt, command_name, find_plugins, registered
-from designer.report.design import carries, contexts, pose, selection, workspace
-from designer.report.design.contexts import Context, shared
+from designer.report.design import sections
 from designer.report.design.drawings import Drawings
 from designer.report.design.first_page import first_page
+from designer.report.design.sections import Context, shared
 from designer.report.document import Report, Section, control_of
 
 SECTIONS: tuple[tuple[str, Callable[[Analysis], Context | None]], ...] = (
     ("answer", first_page),
-    ("inputs", contexts.inputs),
-    ("checks", contexts.requirements),
-    ("carries", carries.sensitivities),
-    ("uncertainty", contexts.uncertainty),
-    ("load-cases", contexts.load_cases),
-    ("workspace", workspace.workspace),
-    ("selection", selection.selection),
-    ("groups", contexts.groups),
-    ("stiffness", contexts.stiffness),
-    ("modes", contexts.modes),
-    ("clearance", contexts.clearance),
-    ("workshop", contexts.fabrication),
-    ("path", contexts.path),
-    ("reactions", contexts.reactions),
-    ("proof", contexts.proof),
-    ("pose", pose.pose),
-    ("family", workspace.family),
-    ("verification", contexts.verification),
-    ("left-out", contexts.left_out),
-    ("assumptions", contexts.assumptions),
-    ("nomenclature", contexts.nomenclature),
-    ("provenance", contexts.provenance),
+    ("inputs", sections.inputs),
+    ("checks", sections.requirements),
+    ("carries", sections.sensitivities),
+    ("uncertainty", sections.uncertainty),
+    ("load-cases", sections.load_cases),
+    ("workspace", sections.workspace),
+    ("selection", sections.selection),
+    ("groups", sections.groups),
+    ("stiffness", sections.stiffness),
+    ("modes", sections.modes),
+    ("clearance", sections.clearance),
+    ("workshop", sections.fabrication),
+    ("path", sections.path),
+    ("reactions", sections.reactions),
+    ("proof", sections.proof),
+    ("pose", sections.pose),
+    ("family", sections.family),
+    ("verification", sections.verification),
+    ("left-out", sections.left_out),
+    ("assumptions", sections.assumptions),
+    ("nomenclature", sections.nomenclature),
+    ("provenance", sections.provenance),
 )
 """Each section's id, as its template is called, and what gives the template its context.
 
@@ -73,14 +73,14 @@ def design_report(analysis: Analysis, *, draws: bool = True, quick: bool = False
     return report_from(Drawings(analysis, draws, why_no_scenes() if draws else ""))
 
 
-def report_from(drawings: Drawings, sections: Sequence[str] = tuple(dict(SECTIONS))) -> Report:
+def report_from(drawings: Drawings, section_ids: Sequence[str] = tuple(dict(SECTIONS))) -> Report:
     """Return the report from its figures, and from what they show."""
     analysis = drawings.analysis
-    shown = [section(drawings, section_id) for section_id in sections]
+    shown = [section(drawings, section_id) for section_id in section_ids]
     problems: list[str] = []
-    if "left-out" in sections:  # the first section that is about the report itself
+    if "left-out" in section_ids:  # the first section that is about the report itself
         extra, problems = plugin_sections(analysis)
-        last = [*sections].index("left-out")
+        last = [*section_ids].index("left-out")
         shown[last:last] = extra
     return Report.of(
         "report",

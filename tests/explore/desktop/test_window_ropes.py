@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QComboBox, QTableView
 from window_driver import LONGEST_MS, Driver
 
 from designer.explore.question import Rope
-from designer.report.design.contexts import proof_statement
+from designer.report.design.sections import proof_statement
 
 
 def shown(driver: Driver, column: int = 0) -> list[str]:
