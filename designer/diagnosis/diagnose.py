@@ -40,8 +40,8 @@ from designer.diagnosis.structure import (
     whereabouts,
 )
 from designer.effects.effect import Effect
-from designer.effects.platform_force import EFFECT as FORCE
-from designer.effects.poses import DISTORTION
+from designer.effects.platform_loads import PLATFORM_FORCE
+from designer.effects.setting_up import POSE_DISTORTION
 from designer.errors import EffectError
 from designer.model.measured_data import Measured
 from designer.progress import Pace
@@ -145,7 +145,7 @@ def _told(
     is_several = len(outcome.found) > 2 and case.measured.has_poses
     if is_several and is_one_smooth_error(before, after, measured.poses.position_m, heldout):
         # A force that changes with the place, where tensions were read.
-        cause = DISTORTION if np.isnan(measured.tension_N).all() else FORCE
+        cause = POSE_DISTORTION if np.isnan(measured.tension_N).all() else PLATFORM_FORCE
         shared = {cause.id: (cause,)}
     findings = tuple(
         _finding(outcome, e, gains[e.key], rivals[e.key] | shared) for e in outcome.found
@@ -224,10 +224,12 @@ def _with_one_force(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
     One that changes with the place: a constant one does what most of them do, and heavier ropes
     pull the more, the farther away the platform is.
     """
-    others = {finding.effect.id for finding in findings if FORCE.id not in finding.rivals}
+    others = {finding.effect.id for finding in findings if PLATFORM_FORCE.id not in finding.rivals}
     if len(findings) < 3 or others != {"linear_mass"}:
         return findings
-    return tuple(replace(f, rivals=tuple(dict.fromkeys([*f.rivals, FORCE.id]))) for f in findings)
+    return tuple(
+        replace(f, rivals=tuple(dict.fromkeys([*f.rivals, PLATFORM_FORCE.id]))) for f in findings
+    )
 
 
 def _rivals(outcome: Outcome, effect: Effect) -> dict[str, tuple[Effect, ...]]:
@@ -249,7 +251,7 @@ def _finding(
     offsets = [each.value for each in estimate.values()] if effect.id == "tension_bias" else []
     is_alike = len(offsets) > 2 and bool(np.std(offsets) < _ALIKE * abs(np.mean(offsets)))
     common = "all cells are off alike, as by a force that all cables share"
-    force = [FORCE.id] * (is_alike and FORCE.id not in rivals)
+    force = [PLATFORM_FORCE.id] * (is_alike and PLATFORM_FORCE.id not in rivals)
     set_up = [
         name
         for name, together in rivals.items()

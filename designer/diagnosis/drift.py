@@ -21,8 +21,9 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import HUBER, Fit, jacobian, with_places
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import beside, orthonormal, without_outliers
-from designer.effects import tension_gain, winch_scale
 from designer.effects.effect import Effect, Setting
+from designer.effects.load_cells import TENSION_BIAS
+from designer.effects.winches import LENGTH_OFFSET
 
 _DECAYS = (0.5, 0.8, 0.9, 0.95, 0.98, 0.995)
 """The last keeps half of itself over 140 rows: to a log of some hundred, a random walk."""
@@ -122,7 +123,7 @@ def _shares_left(problem: Problem, model: Fit) -> FloatArray:
     pose: as if a sensor that drifts slowly were off by another amount in each.
     """
     machine, known = problem.predict.machine, [setting.effect for setting in model.settings]
-    zeros = [e for zero in (winch_scale.ZEROS, tension_gain.ZEROS) for e in zero.on(machine)]
+    zeros = [e for zero in (LENGTH_OFFSET, TENSION_BIAS) for e in zero.on(machine)]
     further = [e for e in zeros if e not in known]
     effects = [*known, *further]
     at_zero = [e.neutral[p.name] for e in further for p in e.parameters]

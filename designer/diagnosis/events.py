@@ -19,8 +19,8 @@ from designer.diagnosis.structure import (
     channels_of,
     draws,
 )
-from designer.effects.drum_eccentricity import best_wave
-from designer.effects.load_step import LEAST_ROWS, best_step
+from designer.effects.platform_loads import LEAST_ROWS, best_step
+from designer.effects.winches import best_wave
 from designer.spelling import in_runs
 
 _MOST_ENDS = 500

@@ -38,7 +38,7 @@ from designer.diagnosis.structure import (
     find_structure,
 )
 from designer.effects.effect import Effect, Readings, Setting
-from designer.effects.platform_force import EFFECT as FORCE
+from designer.effects.platform_loads import PLATFORM_FORCE
 from designer.progress import Pace
 
 _MOST_CARRIERS = 4
@@ -334,7 +334,9 @@ def _bent(outcome: Outcome) -> Withdrawn | None:
 def _unsteady(outcome: Outcome) -> Withdrawn | None:
     """Return a tilt, if what is left scatters more as the rows go on: a wind does, no base."""
     withdrawn = [each.effect for each in outcome.withdrawn]
-    force = tuple(e for e in without(outcome.searcher.candidates, *withdrawn) if e.id == FORCE.id)
+    force = tuple(
+        e for e in without(outcome.searcher.candidates, *withdrawn) if e.id == PLATFORM_FORCE.id
+    )
     is_found = "base_tilt" in [effect.key for effect in outcome.found]
     is_unsteady = any(event.place == "scatter" for event in outcome.structure.events)
     if not (is_found and is_unsteady and force):

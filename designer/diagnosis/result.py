@@ -29,8 +29,8 @@ from designer.documents.plain import (
     record,
 )
 from designer.effects.effect import Effect, Readings, Setting
-from designer.effects.platform_force import EFFECT as FORCE
-from designer.effects.poses import DISTORTION
+from designer.effects.platform_loads import PLATFORM_FORCE
+from designer.effects.setting_up import POSE_DISTORTION
 from designer.model.machine import Machine
 from designer.model.measured_data import KINDS, Measured, Noise, ReadingKind
 from designer.spelling import in_runs
@@ -412,7 +412,9 @@ class Diagnosis:
         rivals = (
             set.intersection(*(set(f.rivals) for f in self.findings)) if self.findings else set()
         )
-        return len(self.findings) > 2 and not rivals.isdisjoint((DISTORTION.id, FORCE.id))
+        return len(self.findings) > 2 and not rivals.isdisjoint(
+            (POSE_DISTORTION.id, PLATFORM_FORCE.id)
+        )
 
     @property
     def wrong_poses(self) -> list[int]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.effects.load_step import LEAST_ROWS
+from designer.effects.platform_loads import LEAST_ROWS
 
 
 class StepTime(NamedTuple):

@@ -1,7 +1,7 @@
-"""Poses that are measured wrong: zero, scale, frame and distortion of a tracker, and its target.
+"""Errors of setting up: frames, points and clocks that are not as the drawing has them.
 
-Each law takes poses as they were measured to those that the robot had. No cable feels such an
-error: it is one of setting up.
+The laws of measured poses (zero, scale, frame and distortion of a tracker, and its target) take
+them to the poses that the robot had. No cable feels such an error.
 """
 
 from __future__ import annotations
@@ -12,34 +12,33 @@ from functools import partial
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from designer.arrays import FloatArray
-from designer.effects.effect import Effect, Parameter, Size, Values, frame_size_m
+from designer.arrays import FloatArray, frozen_array
+from designer.effects.effect import (
+    ALL_ANCHORS,
+    ALL_ATTACHMENTS,
+    Effect,
+    Parameter,
+    Readings,
+    Size,
+    Values,
+    can_turn,
+    frame_size_m,
+    is_in_space,
+    moves_along,
+)
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.model.robot import Poses
 from designer.statics.geometry import cable_geometry
-from designer.units import ANGLE, LENGTH, NUMBER, PER_LENGTH
+from designer.units import ANGLE, LENGTH, NUMBER, PER_LENGTH, TIME
 
-_TURN = Size(2e-3, bounds=(-1.6, 1.6), plausible=(-0.5, 0.5))
+_ROTATION = Size(2e-3, bounds=(-1.6, 1.6), plausible=(-0.5, 0.5))
 _AXES = "xyz"
-
-
-def moves_along(axis: int, machine: Machine) -> bool:
-    """Tell whether a robot moves along an axis, 0 to 2, which may be across its plane."""
-    return not machine.robot.is_planar or bool(abs(machine.robot.level[1, axis]) < 1.0 - 1e-9)
-
-
-def _is_in_space(machine: Machine) -> bool:
-    return not machine.robot.is_planar
-
-
-def _can_turn(machine: Machine) -> bool:
-    return not machine.robot.is_point_mass
 
 
 def _in_plane(machine: Machine, moves_m: FloatArray) -> FloatArray:
     """Return moves (..., 3) [m], of a planar robot without what is across its plane."""
-    if _is_in_space(machine):
+    if is_in_space(machine):
         return moves_m
     across = machine.robot.level[1]
     return np.asarray(moves_m - (moves_m @ across)[..., None] * across)
@@ -49,7 +48,7 @@ def _point(values: Values) -> FloatArray:
     return np.array([values.get(f"{axis}_m", 0.0) for axis in _AXES])
 
 
-def _turn(values: Values) -> FloatArray:
+def _rotation(values: Values) -> FloatArray:
     vector = [values.get(f"r{axis}_rad", 0.0) for axis in _AXES]
     return np.asarray(Rotation.from_rotvec(vector).as_matrix())
 
@@ -69,7 +68,7 @@ def _framed(poses: Poses, values: Values, *, machine: Machine) -> Poses:
     Their middle is a point that no log moves: what one log tells is right for another.
     """
     middle = machine.robot.exit_points_m.mean(axis=0)
-    turn = _turn(values)
+    turn = _rotation(values)
     position = middle + (poses.position_m - middle - _point(values)) @ turn / values["scale"]
     if machine.robot.is_point_mass:
         return replace(poses, position_m=position)
@@ -85,7 +84,7 @@ def _straightened(poses: Poses, values: Values, *, machine: Machine) -> Poses:
 
 
 def _pointed(poses: Poses, values: Values) -> Poses:
-    rotation = poses.rotation @ _turn(values).T
+    rotation = poses.rotation @ _rotation(values).T
     return Poses(poses.position_m - rotation @ _point(values), rotation)
 
 
@@ -143,7 +142,7 @@ _SHIFTS = tuple(
     )
     for axis, name in enumerate(_AXES)
 )
-_TURNS = tuple(Parameter(f"r{axis}_rad", ANGLE, _TURN, is_optional=True) for axis in _AXES)
+_ROTATIONS = tuple(Parameter(f"r{axis}_rad", ANGLE, _ROTATION, is_optional=True) for axis in _AXES)
 _SCALE = Parameter(
     "scale",
     NUMBER,
@@ -153,7 +152,7 @@ _SCALE = Parameter(
     part_of=("pose_frame",),
 )
 
-SHIFT = Effect(
+POSE_OFFSET = Effect(
     id="pose_shift",
     summary="the zero of the measured poses is not the robot's",
     law="measured position is the true one plus an offset",
@@ -164,27 +163,27 @@ SHIFT = Effect(
     needs=frozenset({"pose"}),
     takes_machine=True,
 )
-SCALE = replace(
-    SHIFT,
+POSE_SCALE = replace(
+    POSE_OFFSET,
     id="pose_scale",
     summary="the scale of the measured poses is wrong",
     law="measured position is scale times the true one, about the origin of the robot's frame",
     parameters=(_SCALE,),
     on_poses=_scaled,
 )
-FRAME = replace(
-    SHIFT,
+POSE_FRAME = replace(
+    POSE_OFFSET,
     id="pose_frame",
     summary="the frame of the measured poses is not the robot's",
     law="measured pose is the true one turned by (rx, ry, rz) and scaled about the middle of the "
     "exit points, plus an offset",
     source="definition; Umeyama, IEEE Trans. Pattern Anal. Mach. Intell. 13, 1991",
-    parameters=(*_SHIFTS, *_TURNS, replace(_SCALE, is_optional=True)),
+    parameters=(*_SHIFTS, *_ROTATIONS, replace(_SCALE, is_optional=True)),
     on_poses=_framed,
-    can_have=_is_in_space,
+    can_have=is_in_space,
 )
-DISTORTION = replace(
-    SHIFT,
+POSE_DISTORTION = replace(
+    POSE_OFFSET,
     id="pose_distortion",
     summary="the measured poses are distorted: an error that grows with the square of the distance "
     "from the tracker",
@@ -196,12 +195,12 @@ DISTORTION = replace(
         *(replace(p, size=_tracker, part_of=(), is_shape=True) for p in _SHIFTS),
     ),
     on_poses=_straightened,
-    can_have=_is_in_space,
+    can_have=is_in_space,
     needs=frozenset({"pose", "length"}),
     starts_from=_bent_by,
 )
 TOOL_POINT = replace(
-    SHIFT,
+    POSE_OFFSET,
     id="tool_point",
     summary="the measured point is not the origin of the platform's frame",
     law="measured is the point (x, y, z) of the platform's frame, with axes that are turned by "
@@ -209,9 +208,136 @@ TOOL_POINT = replace(
     source="definition; Tsai and Lenz, IEEE Trans. Robot. Autom. 5, 1989",
     parameters=(
         *(replace(p, size=_marker, part_of=()) for p in _SHIFTS),
-        *(replace(p, can_have=_can_turn) for p in _TURNS),
+        *(replace(p, can_have=can_turn) for p in _ROTATIONS),
     ),
     on_poses=_pointed,
-    can_have=_is_in_space,
+    can_have=is_in_space,
     takes_machine=False,
+)
+
+
+# Exit points, attachment points and centre of mass.
+
+
+def _moved(points_m: FloatArray, values: Values, cable: int) -> FloatArray:
+    moved = np.array(points_m)
+    moved[cable - 1] += _point(values)
+    return frozen_array(moved)
+
+
+def _move_exit(machine: Machine, values: Values, *, cable: int) -> Machine:
+    exits_m = _moved(machine.robot.exit_points_m, values, cable)
+    return replace(machine, robot=replace(machine.robot, exit_points_m=exits_m))
+
+
+def _move_attachment(machine: Machine, values: Values, *, cable: int) -> Machine:
+    attachments_m = _moved(machine.robot.attachments_m, values, cable)
+    platform = replace(machine.robot.platform, attachments_m=attachments_m)
+    return replace(machine, robot=replace(machine.robot, platform=platform))
+
+
+def _move_centre(machine: Machine, values: Values) -> Machine:
+    platform = machine.robot.platform
+    centre_m = frozen_array(platform.centre_of_mass_m + _point(values))
+    platform = replace(platform, centre_of_mass_m=centre_m)
+    return replace(machine, robot=replace(machine.robot, platform=platform))
+
+
+def _exit_size(machine: Machine) -> Size:
+    size = frame_size_m(machine)
+    return Size(1e-3 * size, bounds=(-size, size), plausible=(-0.02 * size, 0.02 * size))
+
+
+def _attachment_size(machine: Machine) -> Size:
+    size = float(np.ptp(machine.robot.attachments_m, axis=0).max()) or 1.0
+    return Size(0.01 * size, bounds=(-size, size), plausible=(-0.2 * size, 0.2 * size))
+
+
+ANCHOR_OFFSET = Effect(
+    id="anchor_offset",
+    summary="the exit point of cable {cable} is not where the drawing has it",
+    law="exit point plus offset",
+    source="definition",
+    parameters=tuple(Parameter(f"{a}_m", LENGTH, _exit_size, is_optional=True) for a in _AXES),
+    on_machine=_move_exit,
+    takes_cable=True,
+    reaches_design=True,
+    also_called=ALL_ANCHORS,
+)
+ATTACHMENT_OFFSET = replace(
+    ANCHOR_OFFSET,
+    id="attachment_offset",
+    summary="the attachment point of cable {cable} is not where the drawing has it",
+    law="attachment point plus offset, in the platform's frame",
+    parameters=tuple(replace(p, size=_attachment_size) for p in ANCHOR_OFFSET.parameters),
+    on_machine=_move_attachment,
+    can_have=can_turn,
+    cause="setting_up",
+    also_called=ALL_ATTACHMENTS,
+)
+CENTRE_OF_MASS_OFFSET = Effect(
+    id="centre_of_mass_offset",
+    summary="the centre of mass is not where the drawing has it",
+    law="centre of mass plus offset, body frame",
+    source="definition",
+    parameters=tuple(
+        replace(p, size=Size(0.01, bounds=(-5.0, 5.0), plausible=(-0.5, 0.5)))
+        for p in ANCHOR_OFFSET.parameters
+    ),
+    on_machine=_move_centre,
+    needs=frozenset({"rotation"}),
+    can_have=can_turn,
+    reaches_design=True,
+)
+
+
+# A base that does not stand upright.
+
+_TILT = Size(2e-3, bounds=(-0.5, 0.5), plausible=(-0.1, 0.1))
+
+
+def _tilt_base(machine: Machine, values: Values) -> Machine:
+    tilt = frozen_array([values["rx_rad"], values["ry_rad"]])
+    return replace(machine, robot=replace(machine.robot, tilt_rad=tilt))
+
+
+BASE_TILT = Effect(
+    id="base_tilt",
+    summary="gravity is not along the frame's -z: the base stands tilted",
+    law="the base frame is turned by the rotation vector (rx, ry, 0) against the vertical",
+    source="definition",
+    parameters=tuple(
+        Parameter(name, ANGLE, _TILT, is_optional=True) for name in ("rx_rad", "ry_rad")
+    ),
+    on_machine=_tilt_base,
+    reaches_design=True,
+)
+
+
+# Two streams whose clocks disagree.
+
+
+def _delay_lengths(readings: Readings, values: Values, measured: Measured) -> Readings:
+    assert measured.time_s is not None
+    from designer.kernel.spline import at_earlier_times
+
+    if np.isnan(readings.length_m).any():  # a spline would spread the gap over all rows
+        return readings
+    length = np.empty(readings.length_m.shape)
+    present = np.ascontiguousarray(readings.length_m)
+    at_earlier_times(measured.time_s, present, values["offset_s"], length)
+    return replace(readings, length_m=length)
+
+
+CLOCK_OFFSET = Effect(
+    id="clock_offset",
+    summary="the length stream lags the pose stream",
+    law="the length of a row is that of the pose this much earlier",
+    source="definition",
+    parameters=(
+        Parameter("offset_s", TIME, Size(0.05, bounds=(-60.0, 60.0), plausible=(-5.0, 5.0))),
+    ),
+    on_readings=_delay_lengths,
+    cause="setting_up",
+    needs=frozenset({"time", "motion", "length"}),
 )
