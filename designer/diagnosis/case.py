@@ -25,7 +25,7 @@ from designer.diagnosis.statistics import heldout_rows, spread
 from designer.effects.effect import NEEDS, Effect, Setting, as_built, frame_size_m
 from designer.effects.platform_loads import LEAST_ROWS
 from designer.errors import InputError
-from designer.measured.left_handed import left_handed
+from designer.measured.sense import left_handed
 from designer.model.machine import Machine
 from designer.model.measured_data import KINDS, Measured, Noise
 from designer.model.measurements import Measurements

@@ -12,7 +12,7 @@ from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import spread
 from designer.diagnosis.structure import Event
 from designer.effects.effect import Setting
-from designer.measured.left_handed import left_handed
+from designer.measured.sense import left_handed
 
 _FAR = 3.0
 """Times the noise from which on a frame may be to blame."""

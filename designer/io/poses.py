@@ -14,8 +14,7 @@ from designer.documents.bounds import BOUNDS
 from designer.documents.opened import open_input, reason
 from designer.errors import Fault, InputError
 from designer.measured.assign import POSITION, ROTATION_VECTOR, unit_faults
-from designer.measured.formats import read_table
-from designer.measured.table import LogTable, RawColumn
+from designer.measured.table import LogTable, RawColumn, read_table
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.study import Study

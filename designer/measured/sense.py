@@ -5,17 +5,16 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.errors import Fault
 from designer.measured.assign import POSITION, TEMPERATURE_NAME, length_names, tension_names
-from designer.measured.left_handed import left_handed
 from designer.measured.table import LogTable
 from designer.model.measured_data import Measured
-from designer.model.robot import Robot
+from designer.model.robot import Poses, Robot
 from designer.statics.geometry import cable_geometry
 
 FEWEST_POSES = 5
@@ -30,7 +29,7 @@ _METRES = f"metres, or the unit in {_MAP}"
 
 
 @dataclass(frozen=True, slots=True)
-class _Ratio:
+class _LengthRatio:
     """Measured lengths of one cable over straight distances, by level and by spread over rows."""
 
     level: float
@@ -65,7 +64,7 @@ def unit_faults(robot: Robot, measured: Measured, file: str, *, is_homed: bool) 
     """
     chord = cable_geometry(robot, measured.poses).chord_m
     ratios = [
-        _ratio(length, distance, is_homed=is_homed)
+        _length_ratio(length, distance, is_homed=is_homed)
         for length, distance in zip(measured.length_m.T, chord.T, strict=True)
     ]
     spreads = [ratio.spread for ratio in ratios if not math.isnan(ratio.spread)]
@@ -79,7 +78,7 @@ def unit_faults(robot: Robot, measured: Measured, file: str, *, is_homed: bool) 
     names, units = length_names(len(ratios)), [ratio.unit for ratio in ratios]
     faults = []
     for unit in dict.fromkeys(unit for unit in units if unit):
-        cables = [k for k, own_unit in enumerate(units) if own_unit == unit]
+        cables = [k for k, unit_of_cable in enumerate(units) if unit_of_cable == unit]
         problem = (
             f"lengths change about {_about([ratios[k].spread for k in cables])} times as much as "
             f"the poses ask for, as if they were in {unit}"
@@ -135,13 +134,13 @@ def sense_faults(
     return faults or list(_too_light(robot, measured, table))
 
 
-def _ratio(length_m: FloatArray, chord_m: FloatArray, *, is_homed: bool) -> _Ratio:
+def _length_ratio(length_m: FloatArray, chord_m: FloatArray, *, is_homed: bool) -> _LengthRatio:
     seen = ~np.isnan(length_m)
     if not seen.any() or np.ptp(chord_m[seen]) == 0.0:
-        return _Ratio(math.nan, math.nan)
+        return _LengthRatio(math.nan, math.nan)
     length, chord = length_m[seen], chord_m[seen]
     level = float(np.median(length / chord)) if is_homed else math.nan
-    return _Ratio(level, float(np.std(length) / np.std(chord)))
+    return _LengthRatio(level, float(np.std(length) / np.std(chord)))
 
 
 def _is_near(value: float, factor: float, tolerance: float) -> bool:
@@ -228,3 +227,28 @@ def _too_light(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fa
 
 def _pull_N(robot: Robot) -> float:
     return float(np.linalg.norm(robot.pull_N[:3]))
+
+
+# Poses in a left-handed frame: one axis counted the other way, or two of them exchanged.
+
+
+def left_handed(robot: Robot, measured: Measured) -> Iterator[tuple[str, Measured]]:
+    """Yield each left-handed frame in words, with the rows as they are if it was the camera's.
+
+    An axis may have been counted from the robot's zero, or from the middle of its exit points.
+    """
+    for text, mirror in _mirrors():
+        for zero in (np.zeros(3), robot.exit_points_m.mean(axis=0)):
+            poses = measured.poses
+            position = zero + (poses.position_m - zero) @ mirror
+            # Each axis of the body is mirrored as well, which leaves a rotation.
+            rotation = mirror @ poses.rotation @ mirror
+            yield text, replace(measured, poses=Poses(position, rotation))
+
+
+def _mirrors() -> Iterator[tuple[str, FloatArray]]:
+    for axis, name in enumerate("xyz"):
+        yield f"{name} counted the other way", np.diag(np.where(np.arange(3) == axis, -1.0, 1.0))
+    for order in ([1, 0, 2], [2, 1, 0], [0, 2, 1]):
+        first, second = (name for name, k in zip("xyz", range(3), strict=True) if order[k] != k)
+        yield f"{first} and {second} exchanged", np.eye(3)[order]
