@@ -8,7 +8,16 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.effects.effect import Effect, Parameter, Readings, Size, Values, pull_of
+from designer.effects.effect import (
+    Effect,
+    Parameter,
+    Readings,
+    Size,
+    Values,
+    pull_of,
+    sized_by,
+    weight_N,
+)
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.units import FLEXURAL_RIGIDITY, FORCE, NUMBER, PER_TEMPERATURE, TIME
@@ -94,10 +103,6 @@ CABLE_MASS = replace(
 # A cable stiff enough in bending to straighten its ends.
 
 
-def _stiffen_in_bending(machine: Machine, values: Values) -> Machine:
-    return replace(machine, flexural_rigidity_N_m2=values["flexural_rigidity_N_m2"])
-
-
 def _rigidity_size(machine: Machine) -> Size:
     """No rope is stiffer than a solid bar, EA · A/(4π), of the lightest material, 1000 kg/m³."""
     cable = machine.cable
@@ -114,7 +119,9 @@ BENDING_STIFFNESS = Effect(
     parameters=(
         Parameter("flexural_rigidity_N_m2", FLEXURAL_RIGIDITY, _rigidity_size, at_least=0.0),
     ),
-    on_machine=_stiffen_in_bending,
+    on_machine=lambda machine, values: replace(
+        machine, flexural_rigidity_N_m2=values["flexural_rigidity_N_m2"]
+    ),
 )
 
 
@@ -133,15 +140,8 @@ def _stretch_toe(
     return replace(readings, length_m=readings.length_m * stretch / (stretch + more))
 
 
-def _toe_tension_size(machine: Machine) -> Size:
-    """The tension at which the toe ends is near those that hold the platform."""
-    weight = machine.robot.weight_N
-    return Size(
-        0.1 * weight,
-        bounds=(0.02 * weight, 20.0 * weight),
-        plausible=(0.02 * weight, 10.0 * weight),
-        neutral=0.3 * weight,
-    )
+_TOE_TENSION = sized_by(weight_N, 0.1, bounds=(0.02, 20.0), plausible=(0.02, 10.0), neutral=0.3)
+"""The tension at which the toe ends is near those that hold the platform."""
 
 
 STIFFENING = Effect(
@@ -151,7 +151,7 @@ STIFFENING = Effect(
     source="Feyrer, Wire Ropes, 2015, section 2.3: rope moduli rise with stress",
     parameters=(
         Parameter("toe_strain", NUMBER, _TOE_STRAIN, at_least=0.0),
-        Parameter("toe_tension_N", FORCE, _toe_tension_size, above=0.0),
+        Parameter("toe_tension_N", FORCE, _TOE_TENSION, above=0.0),
     ),
     on_readings=_stretch_toe,
     needs=frozenset({"length"}),
@@ -171,15 +171,6 @@ def _thermal_growth(values: Values, measured: Measured) -> FloatArray:
     return np.asarray(growth[:, None])
 
 
-def _warm_cables(readings: Readings, values: Values, measured: Measured) -> Readings:
-    # The winch pays out length at 20 °C; what hangs is longer by the growth.
-    return replace(readings, length_m=readings.length_m / _thermal_growth(values, measured))
-
-
-def _warm_winches(readings: Readings, values: Values, measured: Measured) -> Readings:
-    return replace(readings, length_m=readings.length_m * _thermal_growth(values, measured))
-
-
 def _expansion_size(machine: Machine) -> Size:
     """Fibre may shrink; metal grows, in the sun by more than the air's temperature tells."""
     is_metal = machine.rope_density_kg_per_m3 > _METAL_KG_PER_M3
@@ -192,7 +183,10 @@ THERMAL_EXPANSION = Effect(
     law="unstrained length times 1 + α (T - 20 °C)",
     source="definition; steel 12.5e-6 /K, aramid -2e-6 /K, HMPE -12e-6 /K along the fibre",
     parameters=(Parameter("coefficient_per_K", PER_TEMPERATURE, _expansion_size),),
-    on_readings=_warm_cables,
+    # The winch pays out length at 20 °C; what hangs is longer by the growth.
+    on_readings=lambda readings, values, measured: replace(
+        readings, length_m=readings.length_m / _thermal_growth(values, measured)
+    ),
     needs=frozenset({"temperature", "length"}),
 )
 WINCH_EXPANSION = replace(
@@ -207,7 +201,9 @@ WINCH_EXPANSION = replace(
             "coefficient_per_K", PER_TEMPERATURE, Size(1e-5, (-1e-3, 1e-3), plausible=(-5e-5, 5e-5))
         ),
     ),
-    on_readings=_warm_winches,
+    on_readings=lambda readings, values, measured: replace(
+        readings, length_m=readings.length_m * _thermal_growth(values, measured)
+    ),
 )
 
 
@@ -222,10 +218,6 @@ def _creep_growth(values: Values, measured: Measured) -> FloatArray:
     assert measured.time_s is not None
     decades = np.log10(1.0 + np.maximum(measured.time_s, 0.0) / values["onset_s"])
     return np.asarray(1.0 + values["strain_per_decade"] * decades)
-
-
-def _creep_all(readings: Readings, values: Values, measured: Measured) -> Readings:
-    return replace(readings, length_m=readings.length_m / _creep_growth(values, measured)[:, None])
 
 
 def _creep_cable(readings: Readings, values: Values, measured: Measured, *, cable: int) -> Readings:
@@ -243,7 +235,9 @@ CREEP = Effect(
         Parameter("strain_per_decade", NUMBER, _CREEP_STRAIN),
         Parameter("onset_s", TIME, _CREEP_ONSET, neutral=100.0, above=0.0),
     ),
-    on_readings=_creep_all,
+    on_readings=lambda readings, values, measured: replace(
+        readings, length_m=readings.length_m / _creep_growth(values, measured)[:, None]
+    ),
     needs=frozenset({"time", "length"}),
     starts=tuple({"strain_per_decade": 1e-4, "onset_s": t} for t in (5.0, 100.0, 2000.0)),
 )

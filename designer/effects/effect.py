@@ -331,6 +331,37 @@ def moves_along(axis: int, machine: Machine) -> bool:
     return not machine.robot.is_planar or bool(abs(machine.robot.level[1, axis]) < 1.0 - 1e-9)
 
 
+def sized_by(
+    scale: Callable[[Machine], float],
+    typical: float,
+    bounds: tuple[float, float],
+    plausible: tuple[float, float],
+    neutral: float | None = None,
+) -> Callable[[Machine], Size]:
+    """Return a size in proportion to something of the machine, such as its weight."""
+
+    def size(machine: Machine) -> Size:
+        unit = scale(machine)
+        return Size(
+            typical * unit,
+            (bounds[0] * unit, bounds[1] * unit),
+            (plausible[0] * unit, plausible[1] * unit),
+            None if neutral is None else neutral * unit,
+        )
+
+    return size
+
+
+def weight_N(machine: Machine) -> float:
+    """Return the weight of the platform [N]."""
+    return machine.robot.weight_N
+
+
+def platform_extent_m(machine: Machine) -> float:
+    """Return the largest extent of the attachment points along an axis [m]; 0 of a point mass."""
+    return float(np.ptp(machine.robot.attachments_m, axis=0).max())
+
+
 def frame_size_m(machine: Machine) -> float:
     """Return the largest extent of the exit points along an axis [m]."""
     return float(np.ptp(machine.robot.exit_points_m, axis=0).max())

@@ -6,7 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from designer.effects.effect import Effect, Parameter, Readings, Size, Values, per_cable
+from designer.effects.effect import (
+    Effect,
+    Parameter,
+    Readings,
+    Size,
+    Values,
+    per_cable,
+    sized_by,
+    weight_N,
+)
 from designer.effects.winches import direction_of
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
@@ -16,6 +25,7 @@ from designer.units import FORCE, NUMBER
 
 # A wrong gain, of one or of all by what they share (a unit, an amplifier), or a wrong zero.
 
+_ZERO_SIZE = sized_by(weight_N, 0.01, bounds=(-10.0, 10.0), plausible=(-1.0, 1.0))
 _GAIN = Size(0.02, bounds=(0.02, 50.0), plausible=(0.7, 1.4))
 
 
@@ -25,18 +35,9 @@ def _scale_cable(readings: Readings, values: Values, measured: Measured, *, cabl
     return replace(readings, tension_N=tension)
 
 
-def _scale_all(readings: Readings, values: Values, measured: Measured) -> Readings:
-    return replace(readings, tension_N=readings.tension_N * values["gain"])
-
-
 def _shift_zeros(readings: Readings, values: Values, measured: Measured) -> Readings:
     offsets = per_cable(values, "offset_{cable}_N", readings.tension_N.shape[1])
     return replace(readings, tension_N=readings.tension_N + offsets)
-
-
-def _zero_size(machine: Machine) -> Size:
-    weight = machine.robot.weight_N
-    return Size(0.01 * weight, bounds=(-10 * weight, 10 * weight), plausible=(-weight, weight))
 
 
 TENSION_GAIN = Effect(
@@ -54,7 +55,9 @@ TENSION_SCALE = replace(
     id="tension_scale",
     summary="the load cells have one wrong gain in common",
     law="measured tensions are gain times the forces",
-    on_readings=_scale_all,
+    on_readings=lambda readings, values, measured: replace(
+        readings, tension_N=readings.tension_N * values["gain"]
+    ),
     takes_cable=False,
 )
 TENSION_BIAS = replace(
@@ -62,7 +65,7 @@ TENSION_BIAS = replace(
     id="tension_bias",
     summary="the load cells have a wrong zero",
     law="measured tension plus an offset for each cable",
-    parameters=(Parameter("offset_{cable}_N", FORCE, _zero_size, is_optional=True),),
+    parameters=(Parameter("offset_{cable}_N", FORCE, _ZERO_SIZE, is_optional=True),),
     on_readings=_shift_zeros,
 )
 
@@ -138,17 +141,14 @@ def _read_with_hysteresis(readings: Readings, values: Values, measured: Measured
     return replace(readings, tension_N=readings.tension_N - less_N)
 
 
-def _width_size(machine: Machine) -> Size:
-    weight = machine.robot.weight_N
-    return Size(0.01 * weight, bounds=(-weight, weight), plausible=(-0.5 * weight, 0.5 * weight))
-
+_WIDTH_SIZE = sized_by(weight_N, 0.01, bounds=(-1.0, 1.0), plausible=(-0.5, 0.5))
 
 TENSION_HYSTERESIS = Effect(
     id="tension_hysteresis",
     summary="tensions read less while paying out and more while hauling in, whatever the load",
     law="measured tension is less by half the width while paying out, and more while hauling in",
     source="Coulomb friction",
-    parameters=(Parameter("width_{cable}_N", FORCE, _width_size, is_optional=True),),
+    parameters=(Parameter("width_{cable}_N", FORCE, _WIDTH_SIZE, is_optional=True),),
     on_readings=_read_with_hysteresis,
     needs=frozenset({"tension", "reversals"}),
     follows_rows=True,

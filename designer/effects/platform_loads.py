@@ -9,7 +9,17 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import FloatArray, frozen_array
-from designer.effects.effect import Effect, Parameter, Size, Values, can_turn, moves_along
+from designer.effects.effect import (
+    Effect,
+    Parameter,
+    Size,
+    Values,
+    can_turn,
+    moves_along,
+    platform_extent_m,
+    sized_by,
+    weight_N,
+)
 from designer.model.load_case import AIR_DENSITY_KG_PER_M3
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
@@ -25,9 +35,8 @@ def _add_mass(machine: Machine, values: Values) -> Machine:
     return replace(machine, robot=replace(machine.robot, platform=heavier))
 
 
-def _mass_size(machine: Machine) -> Size:
-    mass = machine.robot.platform.mass_kg
-    return Size(0.01 * mass, bounds=(-0.9 * mass, 10.0 * mass), plausible=(-0.3 * mass, 0.5 * mass))
+def _mass_kg(machine: Machine) -> float:
+    return machine.robot.platform.mass_kg
 
 
 PLATFORM_MASS = Effect(
@@ -35,7 +44,11 @@ PLATFORM_MASS = Effect(
     summary="the platform with its payload is heavier or lighter than declared",
     law="mass plus offset",
     source="definition",
-    parameters=(Parameter("offset_kg", MASS, _mass_size),),
+    parameters=(
+        Parameter(
+            "offset_kg", MASS, sized_by(_mass_kg, 0.01, bounds=(-0.9, 10.0), plausible=(-0.3, 0.5))
+        ),
+    ),
     on_machine=_add_mass,
     reaches_design=True,
 )
@@ -56,15 +69,13 @@ def _add_wrench(machine: Machine, values: Values) -> Machine:
     return replace(machine, robot=replace(machine.robot, platform=platform))
 
 
-def _force_size(machine: Machine) -> Size:
-    """A hose or a wind that pulls with more than a seventh of the weight would be known."""
-    weight, limit = machine.robot.weight_N, 0.15 * machine.robot.weight_N
-    return Size(0.01 * weight, bounds=(-10 * weight, 10 * weight), plausible=(-limit, limit))
+_FORCE_SIZE = sized_by(weight_N, 0.01, bounds=(-10.0, 10.0), plausible=(-0.15, 0.15))
+"""A hose or a wind that pulls with more than a seventh of the weight would be known."""
 
 
 def _moment_size(machine: Machine) -> Size:
     """As of such a force at the edge of the platform."""
-    force, arm_m = _force_size(machine), float(np.ptp(machine.robot.attachments_m, axis=0).max())
+    force, arm_m = _FORCE_SIZE(machine), platform_extent_m(machine)
     typical, *ends = (arm_m * np.array([force.typical, *force.bounds, *force.plausible])).tolist()
     return Size(typical, (ends[0], ends[1]), plausible=(ends[2], ends[3]))
 
@@ -83,7 +94,7 @@ PLATFORM_FORCE = Effect(
     source="definition",
     parameters=tuple(
         Parameter(
-            f"{name}_N", FORCE, _force_size, is_optional=True, can_have=partial(moves_along, axis)
+            f"{name}_N", FORCE, _FORCE_SIZE, is_optional=True, can_have=partial(moves_along, axis)
         )
         for axis, name in enumerate("xyz")
     ),
@@ -138,10 +149,6 @@ def best_step(channels: FloatArray) -> BestStep:
     return BestStep(float(share[which, channel]), int(at[which]), int(channel))
 
 
-def _add_late_load(machine: Machine, values: Values) -> Machine:
-    return replace(machine, late_load_kg=values["offset_kg"], late_load_from_s=values["time_s"])
-
-
 def _step_starts(measured: Measured, residual: FloatArray) -> tuple[dict[str, float], ...]:
     """Start where the mean of all tensions, or else of all lengths, steps most."""
     assert measured.time_s is not None
@@ -158,16 +165,11 @@ def _step_starts(measured: Measured, residual: FloatArray) -> tuple[dict[str, fl
     return ()
 
 
-def _step_size(machine: Machine) -> Size:
-    """As much as the platform weighs is believed."""
-    mass = machine.robot.platform.mass_kg
-    return Size(0.02 * mass, bounds=(-0.95 * mass, 20 * mass), plausible=(-mass, mass))
-
-
 _STEP_LOOKS = 6
 """How much more probable by chance the gain at the best of all times is than that of two numbers.
 
 In white noise of 60 rows it is 4, of 200 rows 7, at one in 100, with five rows on each side."""
+_STEP_SIZE = sized_by(_mass_kg, 0.02, bounds=(-0.95, 20.0), plausible=(-1.0, 1.0))
 _STEP_TIME = Size(1.0, bounds=(-1e9, 1e9), plausible=(-1e9, 1e9))
 
 LOAD_STEP = Effect(
@@ -176,10 +178,12 @@ LOAD_STEP = Effect(
     law="platform mass plus offset from that time on, at the origin of the body's frame",
     source="definition",
     parameters=(
-        Parameter("offset_kg", MASS, _step_size),
+        Parameter("offset_kg", MASS, _STEP_SIZE),
         Parameter("time_s", TIME, _STEP_TIME, is_shape=True, is_step_time=True),
     ),
-    on_machine=_add_late_load,
+    on_machine=lambda machine, values: replace(
+        machine, late_load_kg=values["offset_kg"], late_load_from_s=values["time_s"]
+    ),
     needs=frozenset({"time"}),
     starts_from=_step_starts,
     looks=_STEP_LOOKS,
@@ -189,14 +193,9 @@ LOAD_STEP = Effect(
 # Wind on the platform.
 
 
-def _drag(machine: Machine, values: Values) -> Machine:
-    return replace(machine, drag_area_m2=values["drag_area_m2"])
-
-
-def _area_size(machine: Machine) -> Size:
-    """Typical is the area on which a wind of 10 m/s pulls with a hundredth of the weight."""
-    area = machine.robot.weight_N / 6000.0
-    return Size(area, bounds=(0.0, 1e4 * area), plausible=(0.0, 100 * area))
+def _area_m2(machine: Machine) -> float:
+    """Return the area on which a wind of 10 m/s pulls with a hundredth of the weight."""
+    return machine.robot.weight_N / 6000.0
 
 
 WIND_DRAG = Effect(
@@ -204,7 +203,11 @@ WIND_DRAG = Effect(
     summary="the wind pushes the platform",
     law=f"force ½ ρ |v| v C_d A with ρ = {AIR_DENSITY_KG_PER_M3:g} kg/m³",
     source="EN 1991-1-4, 4.5 (air density); definition of the drag area",
-    parameters=(Parameter("drag_area_m2", AREA, _area_size),),
-    on_machine=_drag,
+    parameters=(
+        Parameter(
+            "drag_area_m2", AREA, sized_by(_area_m2, 1.0, bounds=(0.0, 1e4), plausible=(0.0, 100.0))
+        ),
+    ),
+    on_machine=lambda machine, values: replace(machine, drag_area_m2=values["drag_area_m2"]),
     needs=frozenset({"wind"}),
 )

@@ -16,6 +16,7 @@ from designer.effects.effect import (
     frame_size_m,
     is_in_space,
     pull_of,
+    sized_by,
 )
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
@@ -64,17 +65,15 @@ def _pulley_radius_size(machine: Machine) -> Size:
     return Size(0.02, bounds=(0.0, 2.0), plausible=(least, 0.6))
 
 
-def _mount_pulleys(machine: Machine, values: Values) -> Machine:
-    return replace(machine, robot=replace(machine.robot, pulley_radius_m=values["radius_m"]))
-
-
 PULLEY_RADIUS = Effect(
     id="pulley_radius",
     summary="the cables run over pulleys instead of leaving from a point",
     law="tangent point and wrapped length of a swivelling pulley of this radius",
     source="Pott, Cable-Driven Parallel Robots, 2018, section 4.4",
     parameters=(Parameter("radius_m", LENGTH, _pulley_radius_size, at_least=0.0),),
-    on_machine=_mount_pulleys,
+    on_machine=lambda machine, values: replace(
+        machine, robot=replace(machine.robot, pulley_radius_m=values["radius_m"])
+    ),
     reaches_design=True,
 )
 
@@ -185,10 +184,9 @@ def _bend_masts(
     return Readings(readings.length_m - moved * share, readings.tension_N + more_N)
 
 
-def _compliance_size(machine: Machine) -> Size:
-    """A mast gives way by 2 % of the frame at most under the platform's weight."""
-    largest = 0.02 * frame_size_m(machine) / machine.robot.weight_N
-    return Size(0.02 * largest, bounds=(0.0, 50 * largest), plausible=(0.0, largest))
+def _soft_mast_m_per_N(machine: Machine) -> float:
+    """Return the compliance of a mast that gives way by 2 % of the frame under the weight."""
+    return 0.02 * frame_size_m(machine) / machine.robot.weight_N
 
 
 MAST_COMPLIANCE = Effect(
@@ -196,7 +194,14 @@ MAST_COMPLIANCE = Effect(
     summary="the masts bend: exit points move with the pull of their cables",
     law="exit point plus compliance times the horizontal force of its cable",
     source="cantilever, H³/(3 EI): Timoshenko, Strength of Materials I, 1955, section 39",
-    parameters=(Parameter("compliance_m_per_N", COMPLIANCE, _compliance_size, at_least=0.0),),
+    parameters=(
+        Parameter(
+            "compliance_m_per_N",
+            COMPLIANCE,
+            sized_by(_soft_mast_m_per_N, 0.02, bounds=(0.0, 50.0), plausible=(0.0, 1.0)),
+            at_least=0.0,
+        ),
+    ),
     on_readings=_bend_masts,
     takes_machine=True,
 )

@@ -25,6 +25,8 @@ from designer.effects.effect import (
     frame_size_m,
     is_in_space,
     moves_along,
+    platform_extent_m,
+    sized_by,
 )
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
@@ -107,35 +109,29 @@ def _bent_by(
     return ({"gain_per_m": gain, **tracker},)
 
 
-def _shift(machine: Machine) -> Size:
-    """As far as half the frame's size is believed: a camera may stand anywhere."""
-    size = frame_size_m(machine)
-    return Size(1e-3 * size, bounds=(-size, size), plausible=(-0.5 * size, 0.5 * size))
-
-
-def _gain(machine: Machine) -> Size:
-    """Up to a fiftieth of the frame's size at that distance."""
-    per_m = 1.0 / frame_size_m(machine)
-    return Size(1e-3 * per_m, bounds=(-per_m, per_m), plausible=(-0.02 * per_m, 0.02 * per_m))
-
-
-def _tracker(machine: Machine) -> Size:
-    """Somewhere about the machine."""
-    far_m = float(np.abs(machine.robot.exit_points_m).max()) + 3.0 * frame_size_m(machine)
-    return Size(0.03 * far_m, bounds=(-far_m, far_m), plausible=(-far_m, far_m))
-
-
-def _marker(machine: Machine) -> Size:
-    """A marker may be as far off as the platform is large."""
-    extent = float(np.ptp(machine.robot.attachments_m, axis=0).max()) or 0.1 * frame_size_m(machine)
-    return Size(0.01 * extent, bounds=(-5 * extent, 5 * extent), plausible=(-extent, extent))
+_SHIFT = sized_by(frame_size_m, 1e-3, bounds=(-1.0, 1.0), plausible=(-0.5, 0.5))
+"""As far as half the frame's size is believed: a camera may stand anywhere."""
+_GAIN = sized_by(
+    lambda machine: 1.0 / frame_size_m(machine), 1e-3, bounds=(-1.0, 1.0), plausible=(-0.02, 0.02)
+)
+"""Up to a fiftieth of the frame's size at that distance."""
+_TRACKER = sized_by(
+    lambda machine: float(np.abs(machine.robot.exit_points_m).max()) + 3.0 * frame_size_m(machine),
+    0.03, bounds=(-1.0, 1.0), plausible=(-1.0, 1.0),
+)  # fmt: skip
+"""Somewhere about the machine."""
+_MARKER = sized_by(
+    lambda machine: platform_extent_m(machine) or 0.1 * frame_size_m(machine),
+    0.01, bounds=(-5.0, 5.0), plausible=(-1.0, 1.0),
+)  # fmt: skip
+"""A marker may be as far off as the platform is large."""
 
 
 _SHIFTS = tuple(
     Parameter(
         f"{name}_m",
         LENGTH,
-        _shift,
+        _SHIFT,
         is_optional=True,
         can_have=partial(moves_along, axis),
         part_of=("pose_frame",),
@@ -191,8 +187,8 @@ POSE_DISTORTION = replace(
     "(x, y, z), as where the line of sight is bent",
     source="Rüeger, Electronic Distance Measurement, 1996 (refraction)",
     parameters=(
-        Parameter("gain_per_m", PER_LENGTH, _gain),
-        *(replace(p, size=_tracker, part_of=(), is_shape=True) for p in _SHIFTS),
+        Parameter("gain_per_m", PER_LENGTH, _GAIN),
+        *(replace(p, size=_TRACKER, part_of=(), is_shape=True) for p in _SHIFTS),
     ),
     on_poses=_straightened,
     can_have=is_in_space,
@@ -207,7 +203,7 @@ TOOL_POINT = replace(
     "(rx, ry, rz) in it where orientation is measured",
     source="definition; Tsai and Lenz, IEEE Trans. Robot. Autom. 5, 1989",
     parameters=(
-        *(replace(p, size=_marker, part_of=()) for p in _SHIFTS),
+        *(replace(p, size=_MARKER, part_of=()) for p in _SHIFTS),
         *(replace(p, can_have=can_turn) for p in _ROTATIONS),
     ),
     on_poses=_pointed,
@@ -243,14 +239,10 @@ def _move_centre(machine: Machine, values: Values) -> Machine:
     return replace(machine, robot=replace(machine.robot, platform=platform))
 
 
-def _exit_size(machine: Machine) -> Size:
-    size = frame_size_m(machine)
-    return Size(1e-3 * size, bounds=(-size, size), plausible=(-0.02 * size, 0.02 * size))
-
-
-def _attachment_size(machine: Machine) -> Size:
-    size = float(np.ptp(machine.robot.attachments_m, axis=0).max()) or 1.0
-    return Size(0.01 * size, bounds=(-size, size), plausible=(-0.2 * size, 0.2 * size))
+_EXIT_OFFSET = sized_by(frame_size_m, 1e-3, bounds=(-1.0, 1.0), plausible=(-0.02, 0.02))
+_ATTACHMENT_OFFSET = sized_by(
+    lambda machine: platform_extent_m(machine) or 1.0, 0.01, (-1.0, 1.0), plausible=(-0.2, 0.2)
+)
 
 
 ANCHOR_OFFSET = Effect(
@@ -258,7 +250,7 @@ ANCHOR_OFFSET = Effect(
     summary="the exit point of cable {cable} is not where the drawing has it",
     law="exit point plus offset",
     source="definition",
-    parameters=tuple(Parameter(f"{a}_m", LENGTH, _exit_size, is_optional=True) for a in _AXES),
+    parameters=tuple(Parameter(f"{a}_m", LENGTH, _EXIT_OFFSET, is_optional=True) for a in _AXES),
     on_machine=_move_exit,
     takes_cable=True,
     reaches_design=True,
@@ -269,7 +261,7 @@ ATTACHMENT_OFFSET = replace(
     id="attachment_offset",
     summary="the attachment point of cable {cable} is not where the drawing has it",
     law="attachment point plus offset, in the platform's frame",
-    parameters=tuple(replace(p, size=_attachment_size) for p in ANCHOR_OFFSET.parameters),
+    parameters=tuple(replace(p, size=_ATTACHMENT_OFFSET) for p in ANCHOR_OFFSET.parameters),
     on_machine=_move_attachment,
     can_have=can_turn,
     cause="setting_up",

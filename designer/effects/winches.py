@@ -16,6 +16,7 @@ from designer.effects.effect import (
     Values,
     frame_size_m,
     per_cable,
+    sized_by,
 )
 from designer.effects.platform_loads import LEAST_ROWS
 from designer.model.machine import Machine
@@ -42,10 +43,6 @@ def _scale_cable(readings: Readings, values: Values, measured: Measured, *, cabl
     length[:, cable - 1] *= values.get("scale", 1.0)
     length[:, cable - 1] += values.get("offset_m", 0.0)
     return replace(readings, length_m=length)
-
-
-def _scale_all(readings: Readings, values: Values, measured: Measured) -> Readings:
-    return replace(readings, length_m=readings.length_m * values["scale"])
 
 
 def _shift_zeros(readings: Readings, values: Values, measured: Measured) -> Readings:
@@ -83,7 +80,9 @@ DRUM_SCALE = replace(
     summary="the winches' scale is wrong",
     law="measured length is scale times the true one",
     parameters=(Parameter("scale", NUMBER, _DRUM_SCALE, neutral=1.0, above=0.0),),
-    on_readings=_scale_all,
+    on_readings=lambda readings, values, measured: replace(
+        readings, length_m=readings.length_m * values["scale"]
+    ),
     takes_cable=False,
     starts=(),
 )
@@ -108,15 +107,9 @@ LENGTH_OFFSET = replace(
 # Lengths that are read wrong in proportion to tension.
 
 
-def _read_by_tension(readings: Readings, values: Values, measured: Measured) -> Readings:
-    error = values["compliance_m_per_N"] * readings.tension_N
-    return replace(readings, length_m=readings.length_m + error)
-
-
-def _compliance_size(machine: Machine) -> Size:
-    """As much as twice the frame's size of further cable would give."""
-    largest = 2.0 * frame_size_m(machine) / machine.cable.axial_stiffness_N
-    return Size(0.02 * largest, bounds=(-50 * largest, 50 * largest), plausible=(-largest, largest))
+def _cable_compliance_m_per_N(machine: Machine) -> float:
+    """Return as much as twice the frame's size of further cable would give."""
+    return 2.0 * frame_size_m(machine) / machine.cable.axial_stiffness_N
 
 
 TENSION_LENGTH = Effect(
@@ -125,8 +118,16 @@ TENSION_LENGTH = Effect(
     law="measured length plus compliance times the tension at the winch",
     source="Feyrer, Wire Ropes, 2015, section 2.4: turn of the lay under tension; Hooke's "
     "law of drum and cable behind the exit point",
-    parameters=(Parameter("compliance_m_per_N", COMPLIANCE, _compliance_size),),
-    on_readings=_read_by_tension,
+    parameters=(
+        Parameter(
+            "compliance_m_per_N",
+            COMPLIANCE,
+            sized_by(_cable_compliance_m_per_N, 0.02, bounds=(-50.0, 50.0), plausible=(-1.0, 1.0)),
+        ),
+    ),
+    on_readings=lambda readings, values, measured: replace(
+        readings, length_m=readings.length_m + values["compliance_m_per_N"] * readings.tension_N
+    ),
     needs=frozenset({"length"}),
 )
 
@@ -198,15 +199,9 @@ def _layering_size(machine: Machine) -> Size:
     return Size(1e-2 / size, bounds=(0.0, 0.9 / size), plausible=(0.0, max(0.02, 0.2 / size)))
 
 
-def _reference_size(machine: Machine) -> Size:
-    """A tiny gain about a reference far off would be a wrong scale of each winch, not layering.
-
-    Fits start at a tenth of the typical size: among the lengths, since from far off they end at no
-    gain at all.
-    """
-    size = frame_size_m(machine)
-    return Size(5.0 * size, bounds=(0.0, 2 * size), plausible=(0.0, 2 * size))
-
+# A tiny gain about a reference far off would be a wrong scale of each winch, not layering. Fits
+# start at a tenth of the typical size: among the lengths, as from far off they end at no gain.
+_REFERENCE_SIZE = sized_by(frame_size_m, 5.0, bounds=(0.0, 2.0), plausible=(0.0, 2.0))
 
 DRUM_LAYERING = Effect(
     id="drum_layering",
@@ -215,7 +210,7 @@ DRUM_LAYERING = Effect(
     source="definition",
     parameters=(
         Parameter("radius_gain_per_m", PER_LENGTH, _layering_size),
-        Parameter("reference_{cable}_m", LENGTH, _reference_size, is_optional=True, is_shape=True),
+        Parameter("reference_{cable}_m", LENGTH, _REFERENCE_SIZE, is_optional=True, is_shape=True),
     ),
     on_readings=_layer_drums,
     needs=frozenset({"length"}),
