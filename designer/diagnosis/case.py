@@ -10,17 +10,8 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import fit
-from designer.diagnosis.free_poses import FreePredictor, first_poses
-from designer.diagnosis.gauge import in_a_held_frame
-from designer.diagnosis.problem import Predictor, Problem
-from designer.diagnosis.sessions import (
-    GOES_ON,
-    SessionsPredictor,
-    beside_given,
-    goes_on,
-    is_unknown,
-    with_those_of_sessions,
-)
+from designer.diagnosis.free_poses import FreePredictor, first_poses, in_a_held_frame
+from designer.diagnosis.problem import Predictor, Problem, SessionsPredictor
 from designer.diagnosis.statistics import heldout_rows, spread
 from designer.effects.effect import NEEDS, Effect, Setting, as_built, frame_size_m
 from designer.effects.platform_loads import LEAST_ROWS
@@ -35,33 +26,19 @@ from designer.study import Study, declared_settings
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Case:
-    """What a diagnosis starts from.
+    """What a diagnosis starts from."""
 
-    Parameters
-    ----------
-    study, measurements, machine, measured
-        The study, its measurements, the machine as drawn, the data.
-    candidates : tuple of Effect
-        Effects that the data can show, in the order in which they act.
-    given : tuple of Effect
-        What is unknown from the start.
-    skipped : tuple of (effect, reason)
-        Effects that the data cannot show.
-    fixed : tuple of Setting
-        Declared effects that act on these data, less those that are unknown.
-    idle : tuple of (effect, reason)
-        Declared effects for which these data lack something.
-    """
-
-    study: Study
+    study: Study  #: the study, its measurements, the machine as drawn, the data
     measurements: Measurements
     machine: Machine
     measured: Measured
+    #: effects that the data can show, in the order in which they act
     candidates: tuple[Effect, ...]
-    given: tuple[Effect, ...]
-    skipped: tuple[tuple[str, str], ...]
+    given: tuple[Effect, ...]  #: what is unknown from the start
+    skipped: tuple[tuple[str, str], ...]  #: effects that the data cannot show
+    #: declared effects that act on these data, less those that are unknown
     fixed: tuple[Setting, ...] = ()
-    idle: tuple[tuple[str, str], ...] = ()
+    idle: tuple[tuple[str, str], ...] = ()  #: declared effects for which these data lack something
 
     def predictor(self) -> Predictor:
         """Return the model as declared, for these rows."""
@@ -113,7 +90,7 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     if not measured.has_poses and np.isnan(measured.poses.position_m).any():
         assert study.workspace is not None  # the config has been checked
         measured = replace(measured, poses=first_poses(built, measured, study.workspace.region))
-    settings = [*declared, *_of_sessions(study, measurements, machine)]
+    settings = [*declared, *_session_settings(study, measurements, machine)]
     fixed = [s for s in settings if not is_unknown(s.effect, measurements)]
     fixed_effects = {setting.effect.key: setting.effect for setting in fixed}
     known = with_those_of_sessions(study.known_effects.of(built), measurements)
@@ -166,7 +143,7 @@ def _less_estimated_noise(measurements: Measurements, measured: Measured) -> Mea
     )
 
 
-def _of_sessions(study: Study, measurements: Measurements, machine: Machine) -> list[Setting]:
+def _session_settings(study: Study, measurements: Measurements, machine: Machine) -> list[Setting]:
     """Return the effects that are declared of single sessions."""
     return [
         replace(setting, effect=setting.effect.of_session(k))
@@ -179,7 +156,7 @@ def _of_sessions(study: Study, measurements: Measurements, machine: Machine) -> 
 
 _FAR_M = 1e6
 """Rows of different sessions are no neighbours."""
-_UNKNOWN = 10.0
+_UNKNOWN_FACTOR = 10.0
 """How many times as far as a finding that which is unknown may be from the drawing."""
 _OF_FRAME, _MORE_M, _AT_MOST_M = 0.1, 0.1, 3.0
 """How far a point of the frame, or a length, may be off that somebody has paced out, or taped round
@@ -189,7 +166,7 @@ corners: a tenth of the frame and 0.1 m, at most 3 m."""
 def _as_unknown(effect: Effect, measurements: Measurements, machine: Machine) -> Effect:
     """Return an effect with what is plausible of it where it is unknown from the start."""
     limit_m = next((m for name, m in measurements.plausible_m if effect.is_among([name])), None)
-    times = _UNKNOWN
+    times = _UNKNOWN_FACTOR
     if effect.id == "attachment_offset":
         times = 1.0
     elif effect.id in ("anchor_offset", "length_offset") and limit_m is None:
@@ -329,3 +306,58 @@ def _fast_part(kind: FloatArray, measured: Measured) -> float:
 def _robust_std(values: FloatArray) -> float:
     """Standard deviation of the bulk; 1 where there are no values."""
     return 1.0 if np.isnan(values).all() else max(spread(values), 1e-12)
+
+
+# What differs between sessions of one machine that was measured several times.
+
+
+def may_be_of_session(effect: Effect) -> bool:
+    """Tell whether an effect may have come about between two sessions, and is looked for in one.
+
+    Those are errors of setting up, zeros of load cells, and exit points that have been moved.
+    """
+    return effect.cause == "setting_up" or effect.id in ("anchor_offset", "tension_bias")
+
+
+GOES_ON = "goes on from session to session, and their clocks do not tell how far"
+"""Why an effect is not looked for."""
+
+
+def goes_on(effect: Effect) -> bool:
+    """Tell whether an effect, such as creep, counts the time since it began."""
+    return "time" in effect.needs and not effect.needs_motion
+
+
+def is_unknown(effect: Effect, measurements: Measurements) -> bool:
+    """Tell whether an effect is unknown from the start, of the machine or of its session."""
+    if effect.session is None:
+        return effect.is_among(measurements.unknown)
+    own = measurements.sessions[effect.session - 1]
+    return replace(effect, session=None).is_among(own.unknown)
+
+
+def with_those_of_sessions(effects: Sequence[Effect], measurements: Measurements) -> list[Effect]:
+    """Return effects, then those that may be, or are unknown, of one session, for each of them."""
+    numbers = range(1, len(measurements.sessions) + 1)
+    own = [(effect, effect.of_session(k)) for k in numbers for effect in effects]
+    return [
+        *effects,
+        *(e for effect, e in own if may_be_of_session(effect) or is_unknown(e, measurements)),
+    ]
+
+
+def beside_given(effect: Effect, given: Sequence[Effect], n_sessions: int) -> Effect:
+    """Return an effect without the numbers that are unknown wherever it acts.
+
+    That is what another effect has as unknown of the machine, of its own session, or of every
+    session, and not of another cable.
+    """
+    here = [e for e in given if e is not effect and e.cable in (None, effect.cable)]
+    ids = {e.id for e in here if e.session in (None, effect.session)}
+    if effect.session is None and n_sessions:
+        of_each = [{e.id for e in here if e.session == k + 1} for k in range(n_sessions)]
+        of_every = set.intersection(*of_each)
+        if effect.id in of_every:
+            return replace(effect, parameters=())
+        ids |= of_every
+    return effect.beside(ids)

@@ -10,21 +10,19 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis import result
-from designer.diagnosis.case import case_of, first_noise
-from designer.diagnosis.errors_of import (
-    Foretold,
+from designer.diagnosis.accuracy import (
+    ForwardError,
     Interval,
     Outlier,
     bootstrap,
-    foretell,
+    forward_error,
     outliers_of,
 )
-from designer.diagnosis.events import with_given_up
+from designer.diagnosis.case import case_of, first_noise
 from designer.diagnosis.fit import fit
-from designer.diagnosis.hold import structure_left
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import block_of
-from designer.diagnosis.structure import Structure
+from designer.diagnosis.structure import Structure, structure_left, with_given_up
 from designer.documents.plain import Json, json_text, record
 from designer.effects.effect import Setting
 from designer.model.measured_data import KINDS, Measured, Noise
@@ -35,78 +33,43 @@ CARRIED = "as estimated when diagnosed"
 
 @dataclass(frozen=True, slots=True)
 class Left:
-    """What a model leaves of one kind of reading, nothing left out, in SI units.
+    """What a model leaves of one kind of reading, nothing left out, in SI units."""
 
-    Parameters
-    ----------
-    rms : Interval
-        Root mean square.
-    median : float
-        Of the size of each error.
-    """
-
-    rms: Interval = field(metadata={"json": record})
-    median: float
+    rms: Interval = field(metadata={"json": record})  #: root mean square
+    median: float  #: of the size of each error
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Model:
-    """One model on the data.
+    """One model on the data."""
 
-    Parameters
-    ----------
-    settings : tuple of Setting
-        Its effects.
-    residual : array (n_rows, 2 n_cables)
-        Measured less predicted lengths [m], then tensions [N]; NaN where there is none.
-    n_not_held : int
-        Rows that this machine could not hold.
-    length_m, tension_N : Left or None
-        Over the rows that every model holds; None where nothing of the kind was measured.
-    foretold : Foretold or None
-        Pose and tensions by the lengths alone.
-    """
-
-    settings: tuple[Setting, ...]
+    settings: tuple[Setting, ...]  #: its effects
+    #: (n_rows, 2 n_cables): measured less predicted lengths [m], then tensions [N]; NaN where there
+    #: is none
     residual: FloatArray
-    n_not_held: int
+    n_not_held: int  #: rows that this machine could not hold
+    #: over the rows that every model holds; None where nothing of the kind was measured
     length_m: Left | None
     tension_N: Left | None
-    foretold: Foretold | None
+    foretold: ForwardError | None  #: pose and tensions by the lengths alone
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Check:
-    """The declared model on data.
+    """The declared model on data."""
 
-    Parameters
-    ----------
-    study, measured, noise
-        The problem.
-    without, declared : Model
-        Without any effect, and with those that the config declares.
-    fitted : Model or None
-        Without any, but what the config calls unknown fitted to these very rows: the best that can
-        be said without the effects. None where nothing is unknown, or the rows are too few.
-    idle : tuple of (effect, reason)
-        Declared effects for which these data lack something.
-    n_compared : int
-        Rows that every model holds.
-    structure : Structure
-        Test of what the declared model leaves.
-    outliers : tuple of Outlier
-        Readings that stand off from the declared model; they are not left out.
-    """
-
-    study: Study
+    study: Study  #: the problem
     measured: Measured
     noise: Noise
-    without: Model
+    without: Model  #: without any effect, and with those that the config declares
     declared: Model
+    #: without any, but what the config calls unknown fitted to these very rows: the best that can
+    #: be said without the effects. None where nothing is unknown, or the rows are too few.
     fitted: Model | None
-    idle: tuple[tuple[str, str], ...]
-    n_compared: int
-    structure: Structure
+    idle: tuple[tuple[str, str], ...]  #: declared effects for which these data lack something
+    n_compared: int  #: rows that every model holds
+    structure: Structure  #: test of what the declared model leaves
+    #: readings that stand off from the declared model; they are not left out
     outliers: tuple[Outlier, ...]
 
     @property
@@ -287,7 +250,7 @@ def _model(
         n_not_held=int((~mask).sum()),
         length_m=_left(length_m, compared),
         tension_N=_left(tension_N, compared),
-        foretold=foretell(problem, settings, compared & has_lengths),
+        foretold=forward_error(problem, settings, compared & has_lengths),
     )
 
 

@@ -8,28 +8,21 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import BoolArray
-from designer.diagnosis.calibration import calibration_of
-from designer.diagnosis.case import Case, case_of, first_noise, rescaled
-from designer.diagnosis.errors_of import (
+from designer.diagnosis.accuracy import (
     Stage,
     errors_of_sessions,
-    foretell,
+    forward_error,
     outliers_of,
     stage,
     with_sound_lengths,
 )
-from designer.diagnosis.events import with_given_up
+from designer.diagnosis.calibration import calibration_of
+from designer.diagnosis.case import Case, case_of, first_noise, rescaled
 from designer.diagnosis.fit import Fit, fit, with_places
 from designer.diagnosis.free_poses import FreePredictor, taken_up
-from designer.diagnosis.hold import (
-    Gain,
-    Outcome,
-    keep_what_helps,
-    search_and_hold,
-    structure_left,
-)
+from designer.diagnosis.hold import Gain, Outcome, keep_what_helps, search_and_hold
+from designer.diagnosis.plan import Proposal, propose
 from designer.diagnosis.problem import Problem, imbalance_of
-from designer.diagnosis.proposals import Proposal, propose
 from designer.diagnosis.result import Diagnosis, Estimate, Finding
 from designer.diagnosis.search import without
 from designer.diagnosis.statistics import heldout_rows, without_outliers
@@ -37,7 +30,9 @@ from designer.diagnosis.structure import (
     covariates_of,
     is_one_smooth_error,
     smooth_correction,
+    structure_left,
     whereabouts,
+    with_given_up,
 )
 from designer.effects.effect import Effect
 from designer.effects.platform_loads import PLATFORM_FORCE
@@ -180,8 +175,8 @@ def _told(
         correction=correction,
         proposals=_proposals(case, outcome, rivals),
         doubts=tuple(_doubts(case, outcome.fit)),
-        foretold_before=foretell(problem, first, compared),
-        foretold_after=foretell(problem, last, compared),
+        foretold_before=forward_error(problem, first, compared),
+        foretold_after=forward_error(problem, last, compared),
         not_tried=progress.left_out,
         imbalance=imbalance_of(problem.predict, last),
         predicted_before=problem.predicted(first),

@@ -1,4 +1,12 @@
-"""Robust least squares for the parameters of given effects."""
+"""Robust least squares for the parameters of given effects, and how sure their values are.
+
+Two things ask for care. The time from which an effect acts at once has no slope, and lies between
+two rows. And at the edge of what the cables hold readings change much faster than the pose: a taut
+cable's length changes by no more than the pose does, but near the edge a cable hangs slack, and its
+length tells the pose of the model a thousand times better than any camera tells the true one. A fit
+that took the poses for exact would be settled by that row alone. Deviations are therefore told as
+if, in such rows, the poses had the noise of a length.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +17,13 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.edge import steepness
-from designer.diagnosis.look_ahead import View
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import SIGNIFICANCE, score_covariances
-from designer.diagnosis.step_time import StepTime, step_time
-from designer.effects.effect import Effect, Setting, Values
+from designer.effects.effect import Effect, Setting, Values, frame_size_m
+from designer.effects.platform_loads import LEAST_ROWS
+from designer.statics.forward import moved_poses
 
-_STRAIGHT = 0.1
+_FORETOLD_RTOL = 0.1
 """Of a change, by how much another may miss what slopes foretell: steps with them still do good."""
 _JUMP = 1e3
 """Of the noise and of the median row's change: no slope, but another balance of a fitted pose."""
@@ -26,38 +33,22 @@ HUBER = 3.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fit:
-    """Effects with fitted parameters.
+    """Effects with fitted parameters."""
 
-    Parameters
-    ----------
-    settings : tuple of Setting
-        The effects in the order in which they act, with their values.
-    vector : array (n_parameters,)
-        All values in that order.
-    std : array (n_parameters,)
-        Standard deviations, scaled up where the residual exceeds the noise, or where readings of
-        one row, of neighbouring rows or of one block are alike.
-    loss : float
-        Robust sum of squares over the fitted rows, in units of noise.
-    n_data : int
-        Number of readings fitted, less those that internal forces took.
-    inflation : mapping of str to float
-        For each effect, by how much the readings that tell of it are fewer than they look, at
-        least 1: mean ratio of variances (Rao and Scott, Ann. Statist. 12, 1984).
-    wald : mapping of str to float
-        For each effect, how far all its values together are from doing nothing, squared, in units
-        of their covariance: the smallest over the estimates of it that ``std`` is the largest of.
-    covariance : array (n_parameters, n_parameters)
-        Of all values: correlations by least squares, with ``std``.
-    """
-
-    settings: tuple[Setting, ...]
-    vector: FloatArray
+    settings: tuple[Setting, ...]  #: the effects in the order in which they act, with their values
+    vector: FloatArray  #: (n_parameters,): all values in that order
+    #: (n_parameters,): standard deviations, scaled up where the residual exceeds the noise, or
+    #: where readings of one row, of neighbouring rows or of one block are alike
     std: FloatArray
-    loss: float
-    n_data: int
+    loss: float  #: robust sum of squares over the fitted rows, in units of noise
+    n_data: int  #: number of readings fitted, less those that internal forces took
+    #: for each effect, by how much the readings that tell of it are fewer than they look, at least
+    #: 1: mean ratio of variances (Rao and Scott, Ann. Statist. 12, 1984).
     inflation: Mapping[str, float] = field(default_factory=dict)
+    #: for each effect, how far all its values together are from doing nothing, squared, in units of
+    #: their covariance: the smallest over the estimates of it that ``std`` is the largest of
     wald: Mapping[str, float] = field(default_factory=dict)
+    #: (n_parameters, n_parameters): of all values: correlations by least squares, with ``std``
     covariance: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
 
     @property
@@ -154,7 +145,7 @@ def fit(
     several = [e for e in effects if e.starts or e.starts_from]  # valleys to start in
     fresh = [e for e in several if anew or e.key not in known]
     # Evaluations from anywhere, and from near the end.
-    turns = 80 if thorough or not start or (anew and fresh) else 12
+    iterations = 80 if thorough or not start or (anew and fresh) else 12
     valleys = _starts(problem, effects, start, fresh)
     is_known = {effect.key for effect in fresh} <= known
     near = [starting_vector(effects, start, {})] if is_known or not valleys else []
@@ -165,7 +156,7 @@ def fit(
             for group in (valleys, near)
             for vector in _promising(problem, effects, is_used, group)
         ]
-    fits = [_fit_from(problem, effects, is_used, v, turns, thorough=thorough) for v in starts]
+    fits = [_fit_from(problem, effects, is_used, v, iterations, thorough=thorough) for v in starts]
     return min(fits, key=lambda candidate: candidate.loss)
 
 
@@ -276,7 +267,7 @@ def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> Floa
     return np.stack(slopes, axis=-1)
 
 
-class Reach(NamedTuple):
+class LinearTrial(NamedTuple):
     """The robust loss after one linear step, without one more effect in the model and with it.
 
     With it from the best of its starts, of which there are views.
@@ -292,9 +283,9 @@ class Reach(NamedTuple):
         return self.without - self.loss
 
 
-def in_reach(
+def linear_trial(
     problem: Problem, effects: Sequence[Effect], rows: BoolArray, present: Fit, effect: Effect
-) -> Reach:
+) -> LinearTrial:
     """Return what one linear step leaves of the robust loss, with one more effect in the model.
 
     The step is from the present values of the others, and for the effect from where it does
@@ -329,7 +320,7 @@ def in_reach(
         losses.append(_linear_step(residual, np.hstack([known, slopes]))[0])
         views.append(View(own, residual, slopes))
     residual = problem.misfit(present.settings)[is_used]
-    return Reach(_linear_step(residual, known)[0], min(losses), tuple(views))
+    return LinearTrial(_linear_step(residual, known)[0], min(losses), tuple(views))
 
 
 def _linear_step(residual: FloatArray, slopes: FloatArray) -> tuple[float, FloatArray]:
@@ -353,7 +344,7 @@ def _fit_from(
     effects: Sequence[Effect],
     mask: BoolArray,
     start: FloatArray,
-    turns: int,
+    iterations: int,
     *,
     thorough: bool,
 ) -> Fit:
@@ -376,7 +367,9 @@ def _fit_from(
         if taken is not None and not thorough:
             place, before, slopes = taken
             foretold = slopes @ (vector - place)
-            if np.linalg.norm(residual - before - foretold) < _STRAIGHT * np.linalg.norm(foretold):
+            if np.linalg.norm(residual - before - foretold) < _FORETOLD_RTOL * np.linalg.norm(
+                foretold
+            ):
                 return slopes
         slopes = jacobian(problem, effects, vector, nearly=not thorough)[mask]
         taken = vector.copy(), residual, slopes
@@ -393,7 +386,7 @@ def _fit_from(
             f_scale=HUBER,
             xtol=tolerance,
             ftol=tolerance,
-            max_nfev=turns,
+            max_nfev=iterations,
         )
         settings = settings_at(effects, answer.x)
         inside = answer.x.copy()
@@ -474,3 +467,94 @@ def _doubts(
     with np.errstate(invalid="ignore"):  # what has no slope has no covariance
         covariance = bread / np.outer(own, own) * np.outer(std, std)
     return std, inflation, wald, covariance
+
+
+class View(NamedTuple):
+    """An effect where a fit may start: its values, the residual (n,) there, and slopes (n, p)."""
+
+    setting: Setting
+    residual: FloatArray
+    slopes: FloatArray
+
+    def moved(self, step: FloatArray) -> Setting:
+        """Return the values after a step (p,), within bounds."""
+        values = {
+            p.name: float(np.clip(self.setting.values[p.name] + change, *p.bounds))
+            for p, change in zip(self.setting.effect.parameters, step, strict=True)
+        }
+        return Setting(self.setting.effect, values)
+
+
+class StepTime(NamedTuple):
+    """A time [s] and its standard deviation [s]."""
+
+    time_s: float
+    std_s: float
+
+
+def step_time(
+    time_s: FloatArray, before: FloatArray, after: FloatArray, variance: float
+) -> StepTime | None:
+    r"""Return the time at which a step leaves least loss; None where too few rows show it.
+
+    With a step between two rows the loss is Σ before up to the one and Σ after from the other; the
+    time is midway. Within a gap between rows every time is as probable, and one gap against another
+    as exp(-loss / 2 variance) times its width (Hinkley, Biometrika 57 (1970) 1), from which the
+    deviation follows.
+
+    Parameters
+    ----------
+    time_s : array (n_rows,)
+        When the rows were taken [s].
+    before, after : array (n_rows,)
+        Loss of each row without the effect and with it; rows in which these are equal tell nothing.
+    variance : float
+        Of the residual, in the unit of the losses.
+    """
+    rows = np.flatnonzero(before != after)
+    if len(rows) < 2 * LEAST_ROWS:
+        return None
+    rows = rows[np.argsort(time_s[rows], kind="stable")]
+    last = np.arange(LEAST_ROWS - 1, len(rows) - LEAST_ROWS)  # before the step
+    starts, ends = time_s[rows[last]], time_s[rows[last + 1]]
+    width, middle = ends - starts, 0.5 * (starts + ends)
+    if not width.any():
+        return None
+    loss = np.where(width > 0.0, np.cumsum((before - after)[rows])[last], np.inf)
+    best = int(np.argmin(loss))
+    weight = width * np.exp(-0.5 * (loss - loss[best]) / variance)
+    square = weight @ ((middle - middle[best]) ** 2 + width**2 / 12.0) / weight.sum()
+    return StepTime(float(middle[best]), float(np.sqrt(square)))
+
+
+_STEEP = 5.0
+"""Change of a length over that of the pose from which on a row is at the edge: a taut cable's is at
+most 1, and over pulleys and with sag hardly more."""
+_POSE_STEP = 1e-7
+"""Over the frame's size: far above the solver's residual, and short against the way to the edge."""
+
+
+def steepness(problem: Problem, settings: Sequence[Setting]) -> FloatArray:
+    """Return by how much more than noise each reading is in doubt (n_rows, n_readings).
+
+    That is √(1 + |∂r/∂pose|²) with the pose in units of a length's noise; 1 in rows that are not at
+    the edge, and of robots whose internal forces or poses are taken from the readings themselves.
+    """
+    predict, measured = problem.predict, problem.measured
+    robot, n_cables = predict.machine.robot, measured.length_m.shape[1]
+    slopes = np.zeros((*measured.readings.shape, robot.degrees_of_freedom))
+    if predict.row_unknowns:
+        return np.ones(problem.measured.is_read.shape)
+    predicted = problem.predicted(settings).stacked
+    step_m = _POSE_STEP * frame_size_m(predict.machine)
+    for k in range(robot.degrees_of_freedom):
+        steps = np.zeros((measured.n_rows, robot.degrees_of_freedom))
+        for side in (step_m, -step_m):  # the larger: the model may hold a row on one side only
+            steps[:, k] = side
+            there = replace(measured, poses=moved_poses(robot, measured.poses, steps))
+            change = predict.at(there)(settings, problem.noise).stacked - predicted
+            slope = np.nan_to_num(change / side)
+            slopes[..., k] = np.where(np.abs(slope) > np.abs(slopes[..., k]), slope, slopes[..., k])
+    steepest = np.max(np.abs(slopes[:, :n_cables]), axis=(1, 2))
+    in_noise = np.linalg.norm(slopes, axis=-1) * problem.noise.length_m / problem.sigma
+    return np.where(steepest[:, None] > _STEEP, np.sqrt(1.0 + in_noise**2), 1.0)

@@ -16,10 +16,8 @@ from functools import cached_property
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.errors_of import thirds_of
-from designer.diagnosis.events import find_common, find_events, find_spreading, find_swapped
+from designer.diagnosis.accuracy import thirds_of
 from designer.diagnosis.fit import Fit, jacobian, with_places
-from designer.diagnosis.mirrored import find_mirrored
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import MOST_SCATTER, Reason, Withdrawn
 from designer.diagnosis.search import Searcher, Step, without
@@ -31,13 +29,8 @@ from designer.diagnosis.statistics import (
     rms,
     without_outliers,
 )
-from designer.diagnosis.structure import (
-    Event,
-    Structure,
-    covariates_of,
-    find_structure,
-)
-from designer.effects.effect import Effect, Readings, Setting
+from designer.diagnosis.structure import Structure, covariates_of, find_mistake, structure_left
+from designer.effects.effect import Effect, Readings
 from designer.effects.platform_loads import PLATFORM_FORCE
 from designer.progress import Pace
 
@@ -132,33 +125,15 @@ _HARM = -0.1
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """A search, and what of it holds.
+    """A search, and what of it holds."""
 
-    Parameters
-    ----------
-    searcher : Searcher
-        Knows no effect that was withdrawn while it searched.
-    problem : Problem
-        What the tests may see: what was searched, or all readings.
-    rows : array (n_rows,) of bool
-        Rows in which structure is tested.
-    steps : tuple of Step
-        The search, round by round.
-    fit : Fit
-        Joint fit of the effects that hold.
-    found : tuple of Effect
-        Those, without what was unknown from the start.
-    withdrawn : tuple of Withdrawn
-        What was found and does not hold.
-    """
-
-    searcher: Searcher
-    problem: Problem
-    rows: BoolArray
-    steps: tuple[Step, ...]
-    fit: Fit
-    found: tuple[Effect, ...]
-    withdrawn: tuple[Withdrawn, ...] = ()
+    searcher: Searcher  #: knows no effect that was withdrawn while it searched
+    problem: Problem  #: what the tests may see: what was searched, or all readings
+    rows: BoolArray  #: (n_rows,): rows in which structure is tested
+    steps: tuple[Step, ...]  #: the search, round by round
+    fit: Fit  #: joint fit of the effects that hold
+    found: tuple[Effect, ...]  #: those, without what was unknown from the start
+    withdrawn: tuple[Withdrawn, ...] = ()  #: what was found and does not hold
 
     @cached_property
     def structure(self) -> Structure:
@@ -213,7 +188,7 @@ def search_and_hold(
     """
     searcher = Searcher(problem, candidates, effects, rows, progress)
     unsearched = searcher.fit([], thorough=True)
-    if _mistaken(problem, unsearched.settings, rows):
+    if find_mistake(problem, unsearched.settings, rows):
         return Outcome(searcher, problem, rows, (), unsearched, ())
     steps, model, effects_found = searcher.run()
     # The best of what would still earn its place, but with values that nobody would believe; and of
@@ -281,38 +256,6 @@ def keep_what_helps(
     outcome = replace(outcome, problem=problem, rows=np.ones_like(heldout))
     tests = (_implausible, _faint, unseen, _no_step, _unsteady, bent_since)
     return outcome.holding(tests, progress), gains
-
-
-def structure_left(problem: Problem, settings: Sequence[Setting], rows: BoolArray) -> Structure:
-    """Test what a model leaves of the readings of some rows (n_rows,)."""
-    everywhere = covariates_of(problem.measured, problem.surroundings(settings))
-    covariates = {name: column[rows] for name, column in everywhere.items()}
-    residual, predicted = _residual_and_predicted(problem, settings, rows)
-    numbers = problem.measured.row_numbers[rows]
-    structure = find_structure(residual, covariates, settled=problem.measured.settled)
-    mistaken = _mistaken(problem, settings, rows)
-    common = find_common(residual, covariates, numbers)
-    lengths_m = problem.surroundings(settings).length_m[rows]
-    events = find_events(residual, predicted, lengths_m, structure, numbers)
-    named = [mistaken] if mistaken else [*events, common]
-    if not (any(named) or structure.present):
-        named = [find_spreading(residual)]
-    return replace(structure, events=tuple(event for event in named if event))
-
-
-def _mistaken(problem: Problem, settings: Sequence[Setting], rows: BoolArray) -> Event | None:
-    """Return a mirrored frame or exchanged plugs; a frame explains all readings, plugs some."""
-    readings = _residual_and_predicted(problem, settings, rows)
-    numbers = problem.measured.row_numbers[rows]
-    return find_mirrored(problem, settings, rows) or find_swapped(*readings, numbers)
-
-
-def _residual_and_predicted(
-    problem: Problem, settings: Sequence[Setting], rows: BoolArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return residual and prediction of some rows (…, 2 n_cables), both in units of noise."""
-    in_noise = problem.predicted(settings).stacked / problem.sigma
-    return problem.residual(settings)[rows], in_noise[rows]
 
 
 def _implausible(outcome: Outcome) -> Withdrawn | None:

@@ -1,15 +1,17 @@
-"""Which poses to measure, before there is a log: those that tell most of what is unknown.
+"""Which poses to measure: those that tell most of what is unknown, or part two rivals.
 
-D-optimal: of the poses that the robot holds, those whose readings have the largest determinant of
-JᵀJ, J being the slopes of the readings, in units of noise, in the unknowns. Poses are added one by
-one, then exchanged while the determinant grows (Fedorov, Theory of Optimal Experiments, 1972).
+Before there is a log, D-optimal: of the poses that the robot holds, those whose readings have the
+largest determinant of JᵀJ, J being the slopes of the readings, in units of noise, in the unknowns.
+Poses are added one by one, then exchanged while the determinant grows (Fedorov, Theory of Optimal
+Experiments, 1972). After a diagnosis, those at which two effects that its data cannot tell apart
+predict most differently.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,12 +22,13 @@ from designer.diagnosis.case import case_of
 from designer.diagnosis.fit import jacobian
 from designer.diagnosis.problem import Problem
 from designer.documents.plain import json_text
-from designer.effects.effect import Effect, Parameter, as_built
+from designer.effects.effect import Effect, Parameter, Setting, as_built
 from designer.errors import InputError
 from designer.measured.rows import FEWEST_ROWS
 from designer.model.cable import Cable
 from designer.model.measured_data import Measured, Noise
 from designer.model.measurements import Measurements
+from designer.model.region import Region
 from designer.model.robot import Poses
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Study, declared_settings
@@ -46,22 +49,12 @@ MOST_POSES = 200
 
 @dataclass(frozen=True, slots=True)
 class Expected:
-    """What to expect of a parameter.
+    """What to expect of a parameter."""
 
-    Parameters
-    ----------
-    effect, parameter
-        Which it is.
-    std : float
-        Standard deviation with the poses of the plan; inf where they settle no value.
-    std_random : float
-        Median of the same over random choices of as many poses.
-    """
-
-    effect: Effect
+    effect: Effect  #: which it is
     parameter: Parameter
-    std: float
-    std_random: float
+    std: float  #: standard deviation with the poses of the plan; inf where they settle no value
+    std_random: float  #: median of the same over random choices of as many poses
 
     @property
     def label(self) -> str:
@@ -85,38 +78,19 @@ class DeviationCurve(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """Poses to measure.
+    """Poses to measure."""
 
-    Parameters
-    ----------
-    study, noise
-        The problem; the noise of a kind that is not read is inf.
-    statics : Statics
-        The robot at the poses, in the order in which to visit them.
-    places : array (n_poses, 3 or 6)
-        Position [m], and rotation vector [rad] where the platform can turn.
-    n_candidates : int
-        Poses that the robot holds, of which these were chosen.
-    expected : tuple of Expected
-        What to expect of each unknown.
-    condition, observability : float
-        As in `designer.diagnosis.calibration`.
-    sizes : tuple of int
-        Numbers of poses of the curves.
-    curves : tuple of DeviationCurve
-        Deviations over the number of poses.
-    """
-
-    study: Study
+    study: Study  #: the problem; the noise of a kind that is not read is inf
     noise: Noise
-    statics: Statics
+    statics: Statics  #: the robot at the poses, in the order in which to visit them
+    #: (n_poses, 3 or 6): position [m], and rotation vector [rad] where the platform can turn
     places: FloatArray
-    n_candidates: int
-    expected: tuple[Expected, ...]
-    condition: float
+    n_candidates: int  #: poses that the robot holds, of which these were chosen
+    expected: tuple[Expected, ...]  #: what to expect of each unknown
+    condition: float  #: as in `designer.diagnosis.calibration`
     observability: float
-    sizes: tuple[int, ...]
-    curves: tuple[DeviationCurve, ...]
+    sizes: tuple[int, ...]  #: numbers of poses of the curves
+    curves: tuple[DeviationCurve, ...]  #: deviations over the number of poses
 
     @property
     def untold(self) -> tuple[Expected, ...]:
@@ -369,3 +343,106 @@ def _curves(
     for kind in dict.fromkeys(kinds):
         alike = [k for k, other in enumerate(kinds) if other == kind]
         yield DeviationCurve(*kind, std[:, alike].max(axis=1))
+
+
+# Poses that tell two rivals apart.
+
+_RIVAL_CANDIDATES = 2000
+"""Positions to look at: in a cube, neighbours are a twelfth of its side apart."""
+_SPACING = 0.15
+"""Share of the region between proposals: else all three would be one place."""
+_DISTINCT_STD = 3.0
+"""Standard deviations between two rivals that are told apart."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Proposal:
+    """Poses whose measurement would tell two rivals apart."""
+
+    found: str  #: effect that was found, then its rival
+    rival: str
+    positions_m: FloatArray = field(metadata={"json": "poses"})  #: (n_poses, 3): where to measure
+    #: (n_poses,): difference of their predictions there, in units of noise, over all readings of a
+    #: pose
+    separation: FloatArray
+
+    @property
+    def repeats(self) -> FloatArray:
+        """How often to measure each pose, until the two are three deviations apart (n_poses,).
+
+        Inf where both predict the same.
+        """
+        with np.errstate(divide="ignore"):
+            return np.ceil((_DISTINCT_STD / self.separation) ** 2)
+
+
+def propose(
+    problem: Problem,
+    region: Region | None,
+    fitted: Sequence[Setting],
+    rival: Sequence[Setting],
+    names: tuple[str, str],
+) -> Proposal:
+    """Return the poses at which the predictions of two models, both fitted, differ most.
+
+    Parameters
+    ----------
+    problem : Problem
+        As in the diagnosis; the surroundings of a new pose are taken from the middle row.
+    region : Region or None
+        Where to look; the box of the measured poses if there is none.
+    fitted, rival : sequence of Setting
+        The two models.
+    names : tuple of str
+        What to call them.
+    """
+    positions = _rival_positions(problem.measured, region)
+    measured = _measured_at(problem.measured, positions)
+    elsewhere = replace(problem, measured=measured, predict=problem.predict.at(measured))
+    readings, rival_readings = (
+        elsewhere.predicted(settings).stacked for settings in (fitted, rival)
+    )
+    is_measured = ~np.isnan(problem.measured.readings).all(axis=0)
+    gap = (readings - rival_readings)[:, is_measured] / problem.sigma[is_measured]
+    separation = np.sqrt(np.nansum(gap**2, axis=1))
+    size = np.maximum(np.ptp(positions, axis=0), 1e-9)
+    chosen: list[int] = []
+    for k in np.argsort(-separation):
+        apart = [np.abs((positions[k] - positions[c]) / size).max() > _SPACING for c in chosen]
+        if all(apart):
+            chosen.append(int(k))
+        if len(chosen) == 3:  # one to decide, two in case that it cannot be reached
+            break
+    return Proposal(*names, positions[chosen], separation[chosen])
+
+
+def _rival_positions(measured: Measured, region: Region | None) -> FloatArray:
+    if region is not None:
+        return np.concatenate(list(region.samples_m(_RIVAL_CANDIDATES, "low_discrepancy", 0)))
+    position = measured.poses.position_m
+    rng = np.random.default_rng(0)
+    return rng.uniform(position.min(axis=0), position.max(axis=0), (_RIVAL_CANDIDATES, 3))
+
+
+def _measured_at(measured: Measured, positions: FloatArray) -> Measured:
+    """Return rows at rest at other positions, turned as the middle row, in its surroundings."""
+    middle, count = measured.n_rows // 2, len(positions)
+    rotation = measured.poses.rotation
+    unread = np.full((count, measured.length_m.shape[1]), np.nan)
+
+    def repeated(column: FloatArray | None) -> FloatArray | None:
+        return None if column is None else np.repeat(column[middle : middle + 1], count, axis=0)
+
+    return replace(
+        measured,
+        settled=True,
+        poses=Poses(positions, rotation if rotation.ndim == 2 else rotation[middle]),
+        length_m=unread,
+        tension_N=unread,
+        time_s=repeated(measured.time_s),
+        temperature_C=repeated(measured.temperature_C),
+        wind_m_per_s=repeated(measured.wind_m_per_s),
+        covariates={},
+        row_numbers=np.arange(1, count + 1),
+        session=None,
+    )

@@ -1,19 +1,20 @@
 """Readings as a model predicts them by statics, and the residual of data in units of noise.
 
 Of a robot with cables to spare the internal forces of each row are taken from its own readings; see
-`designer.statics.internal`.
+`designer.statics.internal`. Of a machine that was measured several times each session is predicted
+by itself: its effects, its rows, its clock.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.kept_slopes import KeptSlopes
 from designer.diagnosis.statistics import MAD_TO_STD
 from designer.effects.effect import Effect, Readings, Setting, as_built
 from designer.effects.registry import SHIPPED, KnownEffects
@@ -26,6 +27,110 @@ from designer.statics.internal import InternalBalance
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.taut import solve_taut
 from designer.statics.underactuated import imbalance, solve_underactuated
+
+# Slopes that were taken lately, which are good near the place where they were taken.
+#
+# What a reading gains by a parameter hardly changes while this and the others move by little. So a
+# fit that nears its end, or that adds an effect to a model, asks for few slopes anew. The price is
+# a fit off by a small share of its standard deviations; one that goes to the end asks for exact
+# slopes.
+
+_OWN_CHANGE, _OTHER_CHANGE = 0.02, 0.3
+"""By how much values of the effect itself, and of others, may have moved, over `_Values.unit`."""
+_MAX_PLACES = 12
+"""Those of the parts of one validation, and a few more."""
+
+
+class _Values(NamedTuple):
+    """Values of an effect, those at which it does nothing, and what counts as a change.
+
+    That is a typical change, or a tenth of the way from doing nothing where that is more.
+    """
+
+    values: FloatArray
+    neutral: FloatArray
+    unit: FloatArray
+
+
+_Place = Mapping[str, _Values]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _CachedSlopes:
+    place: _Place
+    trust: Hashable
+    slopes: dict[str, FloatArray]
+
+
+@dataclass(eq=False)
+class SlopeCache:
+    """Remembers slopes by the values of all effects; the latest places only."""
+
+    _taken: list[_CachedSlopes] = field(init=False, default_factory=list)
+
+    def of(
+        self,
+        settings: Sequence[Setting],
+        trust: Hashable,
+        compute: Callable[[Setting], FloatArray],
+        *,
+        nearly: bool,
+    ) -> FloatArray:
+        """Return the slopes (…, n_parameters) of all effects at their values.
+
+        Parameters
+        ----------
+        settings : sequence of Setting
+            The effects with their values.
+        trust : hashable
+            What else slopes depend on.
+        compute : callable
+            Returns the slopes in the parameters of one of the settings.
+        nearly : bool
+            Whether those of a place near by will do.
+        """
+        place = {s.effect.key: _values_of(s) for s in settings}
+        slopes: dict[str, FloatArray] = {}
+        for taken in reversed([t for t in self._taken if t.trust == trust]):
+            near = _good_for(place, taken, nearly=nearly) - slopes.keys()
+            slopes |= {key: taken.slopes[key] for key in near}
+            if near:  # those in use are the last to go
+                self._taken.remove(taken)
+                self._taken.append(taken)
+        fresh = {s.effect.key: compute(s) for s in settings if s.effect.key not in slopes}
+        if fresh:
+            self._taken = [*self._taken[1 - _MAX_PLACES :], _CachedSlopes(place, trust, fresh)]
+        slopes |= fresh
+        return np.concatenate([slopes[s.effect.key] for s in settings], axis=-1)
+
+
+def _values_of(setting: Setting) -> _Values:
+    effect = setting.effect
+    values = np.array([setting.values[p.name] for p in effect.parameters])
+    neutral = np.array([p.neutral for p in effect.parameters])
+    typical = np.array([p.typical for p in effect.parameters])
+    return _Values(values, neutral, np.maximum(typical, 0.1 * np.abs(values - neutral)))
+
+
+def _good_for(place: _Place, taken: _CachedSlopes, *, nearly: bool) -> set[str]:
+    """Return the effects whose slopes, taken elsewhere, are good at a place."""
+    moved = {key: _moved(key, place, taken.place) for key in {**place, **taken.place}}
+    own, other = (_OWN_CHANGE, _OTHER_CHANGE) if nearly else (0.0, 0.0)
+    if max(moved.values()) > other:
+        return set()
+    return {key for key in taken.slopes if key in place and moved[key] <= own}
+
+
+def _moved(key: str, place: _Place, other: _Place) -> float:
+    """Return how far an effect's values are apart; without the effect it does nothing."""
+    here, there = place.get(key), other.get(key)
+    known = here or there
+    assert known is not None
+    a, b = (known.neutral if values is None else values.values for values in (here, there))
+    return float(np.max(np.abs(a - b) / known.unit))
+
+
+# The model of one session.
 
 
 def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None) -> Readings:
@@ -86,32 +191,24 @@ def straightened_m(machine: Machine, tension_N: FloatArray, span_m: FloatArray) 
     return np.asarray(load**2 * 3.0 * layer / (8.0 * tension_N**2))
 
 
-_STILL = 1e-5
+_TOLERANCE = 1e-5
 """Of the noise: far below what the slopes of a fit would show."""
-_ABOUT = (0.7, 2.8)
+_DISTRUST_RANGE = (0.7, 2.8)
 """Residual over the distrust within which the latter stays. A new distrust, a power of two, is at
 most a factor of two below the residual; √2 more on either side keep it from swinging."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Guess:
-    """What internal forces are taken with.
+    """What internal forces are taken with."""
 
-    Parameters
-    ----------
-    added : array (n_rows, 2 n_cables)
-        What sensors and stiff ends add to lengths [m] and tensions [N].
-    distrust : (float, float)
-        By how much more than noise lengths and tensions are off. As long as the model is off,
-        readings are trusted to no more than that: else cables would be let slack to make up for an
-        exit point in the wrong place.
-    near : Statics or None
-        The balance that it came from.
-    """
-
+    #: (n_rows, 2 n_cables): what sensors and stiff ends add to lengths [m] and tensions [N]
     added: FloatArray
+    #: by how much more than noise lengths and tensions are off. As long as the model is off,
+    #: readings are trusted to no more than that: else cables would be let slack to make up for an
+    #: exit point in the wrong place.
     distrust: tuple[float, float] = (1.0, 1.0)
-    near: Statics | None = None
+    near: Statics | None = None  #: the balance that it came from
 
     def with_distrust(self, measured: Measured, displayed: Readings, noise: Noise) -> Guess:
         """Return the guess with a distrust that suits what is displayed."""
@@ -123,7 +220,7 @@ class Guess:
     def is_near(self, previous: Guess, noise: Noise) -> bool:
         """Tell whether another guess would give the same, to a small share of the noise."""
         change = np.abs(self.added - previous.added)
-        is_still = change <= _STILL * noise.of_channels(change.shape[1] // 2)
+        is_still = change <= _TOLERANCE * noise.of_channels(change.shape[1] // 2)
         return bool(is_still.all()) and self.distrust == previous.distrust
 
 
@@ -131,25 +228,17 @@ def _distrust(off: FloatArray, before: float) -> float:
     """Return how far readings are off in units of noise; as before where that is about right."""
     finite = off[~np.isnan(off)]
     size = MAD_TO_STD * float(np.median(finite)) if finite.size else 0.0
-    if _ABOUT[0] <= size / before <= _ABOUT[1]:
+    if _DISTRUST_RANGE[0] <= size / before <= _DISTRUST_RANGE[1]:
         return before
     return float(2.0 ** np.floor(np.log2(max(size, 1.0))))
 
 
 @dataclass(frozen=True, eq=False)
 class Built:
-    """A machine with effects on it, and the rows in the poses that it had.
+    """A machine with effects on it, and the rows in the poses that it had."""
 
-    Parameters
-    ----------
-    machine : Machine
-        With the effects.
-    measured : Measured
-        The rows.
-    """
-
-    machine: Machine
-    measured: Measured
+    machine: Machine  #: with the effects
+    measured: Measured  #: the rows
 
     @cached_property
     def _balance(self) -> InternalBalance:
@@ -172,9 +261,9 @@ def true_readings(statics: Statics) -> Readings:
 Kind = tuple[object, ...]
 """A set of effects, whatever their values, with the noise that is assumed."""
 
-_MOST_BUILT = 8
+_MAX_MACHINES = 8
 """Machines that are kept: effects on readings, one after the other, leave the machine alone."""
-_MOST_TURNS = 12
+_MAX_ITERATIONS = 12
 """Turns at most: what sensors add depends little on internal forces, so that few will do."""
 
 
@@ -190,31 +279,20 @@ class Predictor:
     Of a robot with as many cables as degrees of freedom the pose alone tells lengths and tensions.
     With more cables each row's internal forces are taken from its own readings, see
     `designer.diagnosis.problem`.
-
-    Parameters
-    ----------
-    machine : Machine
-        As drawn, without any effect.
-    measured : Measured
-        The data.
-    fixed : tuple of Setting
-        Effects that are declared; with those that are tried they act in the order of ``effects``.
-    effects : KnownEffects
-        All effects, in the order in which they act.
-    session : int or None
-        The session that the rows are of, from 1, where there are several; effects of others do not
-        act.
     """
 
-    machine: Machine
-    measured: Measured
+    machine: Machine  #: as drawn, without any effect
+    measured: Measured  #: the data
+    #: effects that are declared; with those that are tried they act in the order of ``effects``
     fixed: tuple[Setting, ...] = ()
-    effects: KnownEffects = SHIPPED
+    effects: KnownEffects = SHIPPED  #: all effects, in the order in which they act
+    #: the session that the rows are of, from 1, where there are several; effects of others do not
+    #: act
     session: int | None = None
     _guesses: dict[Kind, Guess] = field(init=False, default_factory=dict)
     _known: dict[Kind, tuple[Readings, Readings]] = field(init=False, default_factory=dict)
     _built: dict[Kind, tuple[Measured, Built]] = field(init=False, default_factory=dict)
-    slopes: KeptSlopes = field(init=False, default_factory=KeptSlopes)
+    slopes: SlopeCache = field(init=False, default_factory=SlopeCache)
 
     def at(self, measured: Measured) -> Predictor:
         """Return the same model for other rows; for the same rows, one without a memory."""
@@ -239,7 +317,7 @@ class Predictor:
         rows, kept = self._built.get(key, (None, None))
         if kept is None or rows is not self.measured:
             kept = Built(self.built(settings), self.placed(settings))
-            if len(self._built) >= _MOST_BUILT:
+            if len(self._built) >= _MAX_MACHINES:
                 self._built.clear()
             self._built[key] = self.measured, kept
         return kept
@@ -368,7 +446,7 @@ class Predictor:
         near = None if judges else guess.near
         if near is not None:  # what these values add to it
             _, displayed, guess = _displayed(kept, sensing, near, guess)
-        for _ in range(_MOST_TURNS):
+        for _ in range(_MAX_ITERATIONS):
             held = kept.balanced(guess, noise, near)
             near = None if judges else held
             before = guess
@@ -408,21 +486,11 @@ def _shown(kept: Built, sensing: Sequence[Setting], readings: Readings) -> Readi
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Problem:
-    """Data, model and noise.
+    """Data, model and noise."""
 
-    Parameters
-    ----------
-    measured : Measured
-        The data.
-    predict : Predictor
-        The model.
-    noise : Noise
-        Scale of the residual.
-    """
-
-    measured: Measured
-    predict: Predictor
-    noise: Noise
+    measured: Measured  #: the data
+    predict: Predictor  #: the model
+    noise: Noise  #: scale of the residual
 
     @property
     def sigma(self) -> FloatArray:
@@ -507,3 +575,88 @@ def imbalance_of(predict: Predictor, settings: Sequence[Setting]) -> FloatArray 
 def channel_names(n_cables: int) -> list[str]:
     """Return the names of the columns of a residual."""
     return [f"{kind} {k}" for kind in ("length", "tension") for k in range(1, n_cables + 1)]
+
+
+# Several sessions.
+
+
+@dataclass(eq=False)
+class SessionsPredictor(Predictor):
+    """Predicts readings of several sessions, each by itself: its effects, its rows, its clock."""
+
+    @cached_property
+    def parts(self) -> list[tuple[BoolArray, Predictor]]:
+        """The rows (n_rows,) of each session, and what predicts them."""
+        numbers = self.measured.session
+        assert numbers is not None
+        rows_of = [(int(number), numbers == number) for number in np.unique(numbers)]
+        return [(rows, self._of(number, self.measured.part(rows))) for number, rows in rows_of]
+
+    def _of(self, number: int, measured: Measured) -> Predictor:
+        return Predictor(self.machine, measured, self.fixed, self.effects, number)
+
+    def at(self, measured: Measured) -> Predictor:
+        """Return the same model for other rows; those of no session are as of the first."""
+        return (
+            self._of(1, measured) if measured.session is None else replace(self, measured=measured)
+        )
+
+    def _acting(
+        self, settings: Sequence[Setting]
+    ) -> Iterator[tuple[BoolArray, Predictor, list[Setting]]]:
+        """Yield rows and predictor of each session, with the effects that act in it."""
+        for rows, part in self.parts:
+            yield rows, part, [s for s in settings if s.effect.session in (None, part.session)]
+
+    def machines(self, settings: Sequence[Setting]) -> Iterator[tuple[BoolArray, Machine]]:
+        """Yield the machine as it was in each session, and its rows (n_rows,)."""
+        for rows, part, own in self._acting(settings):
+            yield rows, part.built(own)
+
+    def placed(self, settings: Sequence[Setting]) -> Measured:
+        """Return the rows in the poses that the platform had, as these effects have it."""
+        placed = [part.placed(own).poses for _, part, own in self._acting(settings)]
+        rotations = [p.rotation for p in placed]
+        is_turned = rotations[0].ndim > 2
+        positions = np.concatenate([p.position_m for p in placed])
+        poses = Poses(positions, np.concatenate(rotations) if is_turned else rotations[0])
+        return replace(self.measured, poses=poses)
+
+    def __call__(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+        """Return what the sensors would show with these effects."""
+        return _concatenated([part(own, noise) for _, part, own in self._acting(settings)])
+
+    def surroundings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+        """Return lengths and tensions that a residual may go with."""
+        return _concatenated(
+            [part.surroundings(own, noise) for _, part, own in self._acting(settings)]
+        )
+
+    def true_readings(self, settings: Sequence[Setting], noise: Noise) -> Readings:
+        """Return what was measured, less what sensors and stiff ends add to it in the model."""
+        return _concatenated(
+            [part.true_readings(own, noise) for _, part, own in self._acting(settings)]
+        )
+
+    def distrust(self, settings: Sequence[Setting], noise: Noise) -> tuple[float, float]:
+        """Return how much more than noise readings were off at most in a session."""
+        of_each = [part.distrust(own, noise) for _, part, own in self._acting(settings)]
+        return max(length for length, _ in of_each), max(tension for _, tension in of_each)
+
+    def trust_as(self, known: Sequence[Setting], effects: Sequence[Effect], noise: Noise) -> None:
+        """Trust readings of each session as with a known model; see `Predictor`."""
+        for _, part, own in self._acting(known):
+            acting = [e for e in effects if e.session in (None, part.session)]
+            part.trust_as(own, acting, noise)
+
+    def trust_anew(self, settings: Sequence[Setting], noise: Noise) -> bool:
+        """Judge anew how far readings of each session can be trusted; tell if that changed."""
+        changes = [part.trust_anew(own, noise) for _, part, own in self._acting(settings)]
+        return any(changes)
+
+
+def _concatenated(readings: Sequence[Readings]) -> Readings:
+    return Readings(
+        np.concatenate([each.length_m for each in readings]),
+        np.concatenate([each.tension_N for each in readings]),
+    )

@@ -13,12 +13,11 @@ import numpy as np
 
 from designer import __version__
 from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.accuracy import Error, ForwardError, Outlier, SessionError, Stage
 from designer.diagnosis.calibration import Calibration
-from designer.diagnosis.errors_of import Error, Foretold, Outlier, SessionError, Stage
-from designer.diagnosis.events import wrong_poses
-from designer.diagnosis.proposals import Proposal
+from designer.diagnosis.plan import Proposal
 from designer.diagnosis.search import Step
-from designer.diagnosis.structure import Correction, Structure, Whereabouts
+from designer.diagnosis.structure import Correction, Structure, Whereabouts, wrong_poses
 from designer.documents.plain import (
     DIAGNOSIS_FORMAT,
     Json,
@@ -69,31 +68,18 @@ def _rivals(keys: Sequence[str]) -> dict[str, object]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Finding:
-    """An effect that the model lacked.
+    """An effect that the model lacked."""
 
-    Parameters
-    ----------
-    effect : Effect
-        What it is.
-    parameters : mapping of str to Estimate
-        Its numbers.
-    rivals : tuple of str
-        Effects that this data cannot tell from it; several together are joined by ``and``.
-    heldout_gain, heldout_gain_std : float
-        Share of the held-out mean square that goes when it is added to the others, and how far
-        that is in doubt.
-    warnings : tuple of str
-        What speaks against its values.
-    rule_out : tuple of str
-        Of the rivals of what is physics, the errors of setting up: those are to be ruled out first.
-    """
-
-    effect: Effect = field(metadata={"json": _effect})
-    parameters: Mapping[str, Estimate]
+    effect: Effect = field(metadata={"json": _effect})  #: what it is
+    parameters: Mapping[str, Estimate]  #: its numbers
+    #: effects that this data cannot tell from it; several together are joined by ``and``
     rivals: tuple[str, ...] = field(metadata={"json": _rivals})
+    #: share of the held-out mean square that goes when it is added to the others, and how far that
+    #: is in doubt
     heldout_gain: float
     heldout_gain_std: float
-    warnings: tuple[str, ...]
+    warnings: tuple[str, ...]  #: what speaks against its values
+    #: of the rivals of what is physics, the errors of setting up: those are to be ruled out first
     rule_out: tuple[str, ...] = ()
 
 
@@ -113,37 +99,22 @@ class Reason(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Withdrawn:
-    """An effect that fits, but does not hold.
+    """An effect that fits, but does not hold."""
 
-    Parameters
-    ----------
-    effect : str
-        Its key.
-    covariate : str
-        What it would have to change with; empty for another reason.
-    variation : float
-        By how much of itself, for each standard deviation of the covariate; NaN if not tried.
-    reason : Reason
-        Why it was not kept.
-    detail : str
-        The values that are not plausible; else empty.
-    gain, gain_std : float
-        Share of the held-out mean square that goes with it, and how far that is in doubt; NaN if
-        not tried.
-    instead : tuple of Effect
-        What took its place.
-    """
-
-    effect: str = field(metadata={"json": "id"})
+    effect: str = field(metadata={"json": "id"})  #: its key
+    #: what it would have to change with; empty for another reason
     covariate: str = field(default="", metadata={"json": lambda name: {"covariate": name or None}})
+    #: by how much of itself, for each standard deviation of the covariate; NaN if not tried
     variation: float = float("nan")
     reason: Reason = field(
         default=Reason.DRIFTS, metadata={"json": lambda reason: {"reason": reason.name.lower()}}
-    )
-    detail: str = ""
+    )  #: why it was not kept
+    detail: str = ""  #: the values that are not plausible; else empty
+    #: share of the held-out mean square that goes with it, and how far that is in doubt; NaN if not
+    #: tried
     gain: float = field(default=float("nan"), metadata={"json": "heldout_gain"})
     gain_std: float = field(default=float("nan"), metadata={"json": "heldout_gain_std"})
-    instead: tuple[Effect, ...] = field(default=(), metadata={"json": None})
+    instead: tuple[Effect, ...] = field(default=(), metadata={"json": None})  #: what took its place
 
 
 class DiagnosisVerdict(Enum):
@@ -159,44 +130,25 @@ class DiagnosisVerdict(Enum):
 
 @dataclass(frozen=True, slots=True)
 class RopeChoice:
-    """The cable that the design asks for.
+    """The cable that the design asks for."""
 
-    Parameters
-    ----------
-    grade, size_id : str or None
-        None where no product holds.
-    diameter_m, max_tension_N : float
-        Of the product; NaN where none holds.
-    optimum_m, optimum_tension_N : float
-        Of the config's continuous family; NaN where it has no finite cable.
-    utilisation : float
-        Largest over allowable tension of the product; NaN where none holds.
-    """
-
-    grade: str | None
+    grade: str | None  #: None where no product holds
     size_id: str | None
-    diameter_m: float
+    diameter_m: float  #: of the product; NaN where none holds
     max_tension_N: float
-    optimum_m: float
+    optimum_m: float  #: of the config's continuous family; NaN where it has no finite cable
     optimum_tension_N: float
+    #: largest over allowable tension of the product; NaN where none holds
     utilisation: float = math.nan
 
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """What a given rope meets in the workspace: one that was chosen before, or hangs there now.
-
-    Parameters
-    ----------
-    max_tension_N : float
-        Its largest tension [N]; inf where it cannot hold a pose at all.
-    utilisation : float
-        Largest over allowable tension.
-    """
+    """What a given rope meets in the workspace: one that was chosen before, or hangs there now."""
 
     also_in_files = ("holds",)
-    max_tension_N: float
-    utilisation: float
+    max_tension_N: float  #: its largest tension [N]; inf where it cannot hold a pose at all
+    utilisation: float  #: largest over allowable tension
 
     @property
     def holds(self) -> bool:
@@ -289,8 +241,8 @@ class Diagnosis:
     doubts: tuple[str, ...] = ()
     not_tried: tuple[str, ...] = ()
     imbalance: FloatArray | None = None
-    foretold_before: Foretold | None = None
-    foretold_after: Foretold | None = None
+    foretold_before: ForwardError | None = None
+    foretold_after: ForwardError | None = None
     design_before: RopeChoice | None = None
     design_after: RopeChoice | None = None
     left_in: Whereabouts | None = None

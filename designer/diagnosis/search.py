@@ -1,28 +1,34 @@
-"""Which effects the data ask for: add the best while it earns its place, exchange, prune."""
+"""Which effects the data ask for: add the best while it earns its place, exchange, prune.
+
+Effects that are added one by one may start with one that suits the average of two, and need others
+to mend it. Slopes of all candidates at one place tell of every set of a few at little cost: which
+few effects promise most together.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise, product
 
 import numpy as np
 
-from designer.arrays import BoolArray
+from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.drift import beside_drift
 from designer.diagnosis.fit import (
     HUBER,
     Fit,
-    Reach,
+    LinearTrial,
+    View,
     fit,
     huber,
-    in_reach,
     jacobian,
+    linear_trial,
     with_places,
 )
-from designer.diagnosis.look_ahead import LinearModel, View, best_sets
 from designer.diagnosis.problem import Problem
-from designer.diagnosis.statistics import SIGNIFICANCE, folds
+from designer.diagnosis.statistics import SIGNIFICANCE, beside, folds, orthonormal
 from designer.effects.effect import Effect, Setting
 from designer.progress import Pace
 
@@ -30,47 +36,34 @@ RIVAL_MARGIN = 9.0
 """Difference of penalised loss below which two effects count as equally good."""
 _PENALTY = 2.0
 """For each parameter, in units of the variance that is left: Akaike's information criterion."""
-_REACH = 0.25
+_PROMISE_SHARE = 0.25
 """Share of the best promise below which a candidate is not fitted: a linear step foretells the gain
 of a fit to some tens of per cent."""
-_FEWEST = 3
+_MIN_TRIALS = 3
 """Candidates that are fitted, whatever they promise: a report shows them."""
-_MOST_SETS = 6
+_MAX_SETS = 6
 """Sets of effects that are fitted of those that promise most."""
-_MOST_TOGETHER = 3
+_MAX_TOGETHER = 3
 """Cables whose effects are tried together: what is off with more of them has a cause in common."""
-_SAME = 0.5
+_TIE = 0.5
 """Difference of penalised loss that is none: laws that are one, seen from two sides."""
-_ACTS = 3.3
+_SIGNIFICANT_STD = 3.3
 """Standard deviations from doing nothing that one number in a thousand gets to by chance."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EffectTrial:
-    """One candidate added to the present model.
+    """One candidate added to the present model."""
 
-    Parameters
-    ----------
-    effect : Effect
-        The candidate.
-    fit : Fit
-        The model with it.
-    gain : float
-        What it takes off the robust loss over the rows for fitting, in units of the variance left,
-        and for as many independent readings as there are.
-    chance : float
-        Probability of such a gain by chance in any of the candidates of this round.
-    heldout_gain : float
-        The same gain summed over parts of the rows that each fit has not seen; NaN if not tried.
-    is_drift : bool
-        Whether a drift of the readings explains it as well; gain and chance are then beside that.
-    """
-
-    effect: Effect
-    fit: Fit
+    effect: Effect  #: the candidate
+    fit: Fit  #: the model with it
+    #: what it takes off the robust loss over the rows for fitting, in units of the variance left,
+    #: and for as many independent readings as there are
     gain: float
-    chance: float
+    chance: float  #: probability of such a gain by chance in any of the candidates of this round
+    #: the same gain summed over parts of the rows that each fit has not seen; NaN if not tried
     heldout_gain: float
+    #: whether a drift of the readings explains it as well; gain and chance are then beside that
     is_drift: bool = False
 
     def score(self, variance: float) -> float:
@@ -98,27 +91,15 @@ class EffectTrial:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Step:
-    """One round of the search.
+    """One round of the search."""
 
-    Parameters
-    ----------
-    trials : tuple of EffectTrial
-        All candidates that were fitted, best first.
-    added : Effect or None
-        The one that earned its place.
-    is_complete : bool
-        Whether there was time to try all.
-    passed_over : mapping of str to float
-        Candidates that were not fitted, with the gain that one linear step promised, best first.
-    instead : tuple of Effect
-        What takes the place of all that was found, this round's as well, as it does better
-        together; mostly empty.
-    """
-
-    trials: tuple[EffectTrial, ...]
-    added: Effect | None
-    is_complete: bool = True
+    trials: tuple[EffectTrial, ...]  #: all candidates that were fitted, best first
+    added: Effect | None  #: the one that earned its place
+    is_complete: bool = True  #: whether there was time to try all
+    #: candidates that were not fitted, with the gain that one linear step promised, best first
     passed_over: Mapping[str, float] = field(default_factory=dict)
+    #: what takes the place of all that was found, this round's as well, as it does better together;
+    #: mostly empty
     instead: tuple[Effect, ...] = ()
 
 
@@ -142,7 +123,7 @@ def _best(trials: Sequence[EffectTrial], order: Sequence[Effect]) -> list[Effect
     ]
     # Of equal ones, the one that acts first.
     place = {effect.key: k for k, effect in enumerate(order)}
-    close.sort(key=lambda t: (-round(t.score(variance) / _SAME), place[t.effect.key]))
+    close.sort(key=lambda t: (-round(t.score(variance) / _TIE), place[t.effect.key]))
     by_numbers = sorted(close, key=lambda t: len(t.effect.parameters))
     set_up = [t for t in by_numbers if t.effect.cause == "setting_up"]
     return list(dict.fromkeys([*set_up[:1], *by_numbers[:1]]))
@@ -177,32 +158,20 @@ def _acting_cables(effect: Effect, model: Fit) -> list[int]:
     return [
         cable
         for cable, (p, std) in enumerate(numbers, start=1)
-        if f"_{cable}_" in p.name and abs(setting.values[p.name] - p.neutral) > _ACTS * std
+        if f"_{cable}_" in p.name
+        and abs(setting.values[p.name] - p.neutral) > _SIGNIFICANT_STD * std
     ]
 
 
 @dataclass(eq=False)
 class Searcher:
-    """Searches one data set.
+    """Searches one data set."""
 
-    Parameters
-    ----------
-    problem : Problem
-        Data, model, noise.
-    candidates : sequence of Effect
-        In the order in which effects act.
-    given : sequence of Effect
-        Unknown from the start: always fitted, and never a finding.
-    rows : array (n_rows,) of bool
-        Rows for fitting.
-    progress : Pace, optional
-        Told what is being tried; where the time is spent, the search ends.
-    """
-
-    problem: Problem
-    candidates: Sequence[Effect]
-    given: Sequence[Effect]
-    rows: BoolArray
+    problem: Problem  #: data, model, noise
+    candidates: Sequence[Effect]  #: in the order in which effects act
+    given: Sequence[Effect]  #: unknown from the start: always fitted, and never a finding
+    rows: BoolArray  #: (n_rows,): rows for fitting
+    #: told what is being tried; where the time is spent, the search ends
     progress: Pace = field(default_factory=Pace)
     _unseen: dict[tuple[frozenset[str], str], float] = field(default_factory=dict)
     _views: tuple[View, ...] = ()  # of all candidates, without any other
@@ -251,7 +220,7 @@ class Searcher:
         setting up come before physics, and few numbers before many.
         """
         excess = present.loss - present.n_data
-        is_explained = excess < _ACTS * math.sqrt(2.0 * present.n_data)
+        is_explained = excess < _SIGNIFICANT_STD * math.sqrt(2.0 * present.n_data)
         has_few_numbers = sum(map(_penalty, effects)) < RIVAL_MARGIN
         if is_explained and has_few_numbers:
             return effects, present
@@ -320,7 +289,7 @@ class Searcher:
             known = jacobian(self.problem, self.given, alone.vector, nearly=True)[is_used]
         weight = HUBER / np.maximum(np.abs(now), HUBER)
         linear = LinearModel(self._views, off, known, weight)
-        return best_sets(linear, _penalty, effects, max(2, len(effects)), _MOST_SETS)
+        return best_sets(linear, _penalty, effects, max(2, len(effects)), _MAX_SETS)
 
     def _extended(
         self, effects: Sequence[Effect], trial: EffectTrial, trials: Sequence[EffectTrial]
@@ -354,10 +323,12 @@ class Searcher:
         promise may be no accident.
         """
         promised = self._promised(effects, present, part)
-        looks, least = len(promised), _REACH * max(promised.values(), default=0.0)
-        clear = [e for e in promised if _chance(promised[e] / _REACH, e, looks) < SIGNIFICANCE]
+        looks, least = len(promised), _PROMISE_SHARE * max(promised.values(), default=0.0)
+        clear = [
+            e for e in promised if _chance(promised[e] / _PROMISE_SHARE, e, looks) < SIGNIFICANCE
+        ]
         near = {e for e in clear if promised[e] >= least}
-        first = [e for k, e in enumerate(promised) if k < _FEWEST or e in near or e in earned]
+        first = [e for k, e in enumerate(promised) if k < _MIN_TRIALS or e in near or e in earned]
         # What nothing is expected of is only shown: it is not looked for in far valleys.
         hopeful = {*clear, *earned}
         trials = self._tried(effects, first, present, part, looks, hopeful)
@@ -380,7 +351,7 @@ class Searcher:
         for effect in self._others(effects):
             self.progress(f"{part}: {effect.key} at first sight")
             is_late = self.progress.is_over
-            late = Reach(present.loss, present.loss)
+            late = LinearTrial(present.loss, present.loss)
             reaches[effect] = late if is_late else self._in_reach(effects, effect, present)
         if not effects:
             self._views = tuple(view for reach in reaches.values() for view in reach.views)
@@ -389,9 +360,9 @@ class Searcher:
         promised = {effect: reach.gain / variance for effect, reach in reaches.items()}
         return dict(sorted(promised.items(), key=lambda e: _penalty(e[0]) - e[1]))
 
-    def _in_reach(self, effects: Sequence[Effect], effect: Effect, present: Fit) -> Reach:
+    def _in_reach(self, effects: Sequence[Effect], effect: Effect, present: Fit) -> LinearTrial:
         every = self._sorted([*self.given, *effects, effect])
-        return in_reach(self.problem, every, self.rows, present, effect)
+        return linear_trial(self.problem, every, self.rows, present, effect)
 
     def _tried(
         self,
@@ -507,7 +478,7 @@ class Searcher:
     def _groups(self, effect: Effect, present: Fit) -> list[tuple[Effect, ...]]:
         """Return effects, kind by kind, of the few cables that one for all cables acts on."""
         acting = _acting_cables(effect, present)
-        if not 2 <= len(acting) <= min(_MOST_TOGETHER, len(effect.parameters) - 1):
+        if not 2 <= len(acting) <= min(_MAX_TOGETHER, len(effect.parameters) - 1):
             return []
         others = [
             e
@@ -599,9 +570,7 @@ class Searcher:
                     k = effects.index(member.effect)
                     less = len(member.effect.parameters) - len(trial.effect.parameters)
                     is_first = place(trial.effect) < place(member.effect)
-                    margin = (
-                        -RIVAL_MARGIN if less > 0 else -_SAME if is_first and not less else _SAME
-                    )
+                    margin = -RIVAL_MARGIN if less > 0 else -_TIE if is_first and not less else _TIE
                     effects, present = self._swapped(
                         effects, present, k, trial.effect, margin, anew=True
                     )
@@ -656,3 +625,113 @@ class Searcher:
     def _sorted(self, effects: Sequence[Effect]) -> list[Effect]:
         place = {effect.key: k for k, effect in enumerate(self.candidates)}
         return sorted(effects, key=lambda effect: place.get(effect.key, -1))
+
+
+# Sets of effects that promise most together.
+
+_BEAM_WIDTH = 20
+"""Sets of each size that another effect is added to. Of pairs all are looked at."""
+
+
+class LinearModel:
+    r"""How a residual changes with any set of effects, to first order.
+
+    With r the residual without any of them, r_v that with effect v at its start, J the slopes and W
+    the weights, a set leaves min over x of \|√W (r + Σ (r_v - r) + J x)\|², beside what is known.
+
+    Parameters
+    ----------
+    views : sequence of View
+        All effects at all starts, over the same n readings.
+    residual : array (n,)
+        Without any of them.
+    known : array (n, p)
+        Slopes of what is in the model anyway.
+    weight : array (n,)
+        Of each reading's square.
+    """
+
+    def __init__(
+        self, views: Sequence[View], residual: FloatArray, known: FloatArray, weight: FloatArray
+    ) -> None:
+        self.views = views
+        root = np.sqrt(weight)[:, None]
+        sizes = [np.maximum(np.linalg.norm(view.slopes, axis=0), 1e-300) for view in views]
+        slopes = [view.slopes / size for view, size in zip(views, sizes, strict=True)]
+        shifts = [residual, *(view.residual - residual for view in views)]
+        columns = root * np.column_stack([*shifts, *slopes])
+        columns = beside(orthonormal(root * known), columns)
+        self._products = columns.T @ columns
+        ends = len(shifts) + np.cumsum([0, *map(len, sizes)])
+        self._places = [np.arange(first, end) for first, end in pairwise(ends)]
+        self._sizes = sizes
+
+    @property
+    def nothing(self) -> float:
+        """What is left without any effect."""
+        return float(self._products[0, 0])
+
+    def step(self, members: Sequence[int]) -> tuple[float, FloatArray]:
+        """Return what a set of views leaves at least, and the step to there, as scaled inside."""
+        at = np.concatenate([self._places[k] for k in members])
+        shifted = np.array([0, *(1 + k for k in members)])
+        square = self._products[np.ix_(at, at)]
+        square.flat[:: len(at) + 1] += 1e-9 * (np.trace(square) + 1e-9)
+        pull = self._products[np.ix_(at, shifted)].sum(axis=1)
+        step = -np.linalg.solve(square, pull)
+        return float(self._products[np.ix_(shifted, shifted)].sum() + pull @ step), step
+
+    def settings(self, members: Sequence[int]) -> tuple[Setting, ...]:
+        """Return the values to which the step leads."""
+        ends = np.cumsum([len(self._sizes[k]) for k in members])[:-1]
+        pairs = zip(members, np.split(self.step(members)[1], ends), strict=True)
+        return tuple(self.views[k].moved(step / self._sizes[k]) for k, step in pairs)
+
+
+def best_sets(
+    model: LinearModel,
+    penalty: Callable[[Effect], float],
+    present: Collection[Effect],
+    most: int,
+    count: int,
+) -> list[tuple[Setting, ...]]:
+    """Return the sets of effects of which a linear step promises most.
+
+    Best first, after that step; without those present, and those that add one effect to them, which
+    is what a search tries anyway. Of the present ones a step may promise what no fit reaches.
+
+    Parameters
+    ----------
+    model : LinearModel
+        What a set promises.
+    penalty : callable
+        What a set is to be better by for an effect.
+    present : collection of Effect
+        The set to replace, if any.
+    most : int
+        Effects in a set, at most.
+    count : int
+        Sets to return, at most.
+    """
+    effects = [view.setting.effect for view in model.views]
+    own = frozenset(effect.key for effect in present)
+    best: dict[frozenset[str], tuple[float, tuple[int, ...]]] = {}
+    starts: list[tuple[int, ...]] = [()]
+    for size in range(1, most + 1):
+        reached: dict[tuple[int, ...], float] = {}
+        for members, k in product(starts, range(len(effects))):
+            keys = frozenset(effects[m].key for m in members)
+            more = tuple(sorted((*members, k)))
+            if effects[k].key in keys or more in reached:
+                continue
+            score = model.step(more)[0] + sum(penalty(effects[m]) for m in more)
+            reached[more] = score
+            name = keys | {effects[k].key}
+            best[name] = min((score, more), best.get(name, (np.inf, ())))
+        starts = sorted(reached, key=reached.__getitem__)[: None if size == 1 else _BEAM_WIDTH]
+    others = [
+        promise
+        for name, promise in best.items()
+        if promise[0] < model.nothing and not (own <= name and len(name) <= len(own) + 1)
+    ]
+    return [model.settings(members) for _, members in sorted(others)[:count]]

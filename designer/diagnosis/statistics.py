@@ -127,18 +127,10 @@ _LONGEST = 0.98
 
 @dataclass(frozen=True, slots=True)
 class Lasting:
-    """Correlation of a residual between rows that follow one another: ``share · decay**k``.
+    """Correlation of a residual between rows that follow one another: ``share · decay**k``."""
 
-    Parameters
-    ----------
-    share : float
-        Share of the variance that lasts; 0 where rows are independent.
-    decay : float
-        What of it is left one row later.
-    """
-
-    share: float
-    decay: float
+    share: float  #: share of the variance that lasts; 0 where rows are independent
+    decay: float  #: what of it is left one row later
 
     @property
     def rows(self) -> float:

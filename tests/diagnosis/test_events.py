@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from designer.diagnosis.events import (
+from designer.diagnosis.structure import (
     find_common,
     find_events,
     find_spreading,
+    find_structure,
     find_swapped,
 )
-from designer.diagnosis.structure import find_structure
 
 ROWS, CABLES = 100, 3
 NUMBERS = np.arange(1, ROWS + 1)

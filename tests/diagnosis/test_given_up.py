@@ -10,9 +10,8 @@ from twins.logs import write_printer
 
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
-from designer.diagnosis.events import with_given_up, wrong_poses
 from designer.diagnosis.result import DiagnosisVerdict
-from designer.diagnosis.structure import Event, Structure
+from designer.diagnosis.structure import Event, Structure, with_given_up, wrong_poses
 from designer.effects.effect import frame_size_m
 from designer.io.config import read_study
 from designer.measured.read import read_measured

@@ -7,7 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from designer.diagnosis.look_ahead import LinearModel, View, best_sets
+from designer.diagnosis.fit import View
+from designer.diagnosis.search import LinearModel, best_sets
 from designer.effects.effect import Setting
 
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from designer.diagnosis.fit import jacobian
-from designer.diagnosis.kept_slopes import KeptSlopes
+from designer.diagnosis.problem import SlopeCache
 from designer.effects.effect import Effect, Parameter, Size
 from designer.units import LENGTH
 
@@ -37,7 +37,7 @@ def test_a_row_tells_its_slope_from_the_side_on_which_it_is_held():
         in_noise=in_noise,
         predicted=in_noise,
         predict=SimpleNamespace(
-            slopes=KeptSlopes(), distrust=lambda settings, noise: (1.0, 1.0), row_unknowns=0
+            slopes=SlopeCache(), distrust=lambda settings, noise: (1.0, 1.0), row_unknowns=0
         ),
     )
     slopes = jacobian(problem, [STRETCH], np.array([1.0]))

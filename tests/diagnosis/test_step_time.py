@@ -9,10 +9,9 @@ from twins.troubles import troubled
 
 from designer.cli.tables import _estimated
 from designer.diagnosis.case import case_of
-from designer.diagnosis.fit import fit
+from designer.diagnosis.fit import fit, step_time
 from designer.diagnosis.problem import Predictor, Problem
 from designer.diagnosis.result import Estimate
-from designer.diagnosis.step_time import step_time
 from designer.effects.effect import Setting
 from designer.io.config import read_study
 from designer.measured.read import read_measured

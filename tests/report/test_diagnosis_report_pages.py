@@ -16,8 +16,8 @@ from designer.analysis.provenance import Provenance
 from designer.arrays import frozen_array
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
+from designer.diagnosis.plan import Proposal
 from designer.diagnosis.problem import Predictor
-from designer.diagnosis.proposals import Proposal
 from designer.diagnosis.result import (
     MOST_SCATTER,
     Diagnosis,

@@ -11,7 +11,7 @@ from itertools import groupby
 
 import numpy as np
 
-from designer.diagnosis.errors_of import Interval
+from designer.diagnosis.accuracy import Interval
 from designer.diagnosis.free_poses import TAKEN_UP
 from designer.diagnosis.result import MOST_SCATTER, Diagnosis, Finding
 from designer.diagnosis.search import EffectTrial

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from designer.arrays import FloatArray
-from designer.diagnosis.errors_of import Error, Interval, Stage
+from designer.diagnosis.accuracy import Error, Interval, Stage
 from designer.diagnosis.result import Diagnosis
 from designer.model.measured_data import KINDS, Noise
 from designer.report import format as fmt

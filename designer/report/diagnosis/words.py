@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 
 from designer.arrays import IntArray
+from designer.diagnosis.accuracy import Interval
 from designer.diagnosis.calibration import Calibrated
-from designer.diagnosis.errors_of import Interval
 from designer.diagnosis.result import Estimate, Finding
 from designer.diagnosis.search import EffectTrial
 from designer.effects.effect import OF_SESSION, Effect, Parameter

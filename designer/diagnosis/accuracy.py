@@ -20,7 +20,7 @@ from designer.model.measured_data import KINDS, Noise
 from designer.model.robot import Poses
 from designer.statics.forward import solve_forward
 
-_DRAWS = 400
+_BOOTSTRAP_DRAWS = 400
 """Of the bootstrap: the ends of a 95 % interval scatter by a thirtieth of its width."""
 
 
@@ -45,43 +45,23 @@ def _heldout(interval: Interval) -> dict[str, object]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Error:
-    """Error of one kind of reading, in SI units.
+    """Error of one kind of reading, in SI units."""
 
-    Parameters
-    ----------
-    rms : float
-        Over the rows that were fitted.
-    heldout : Interval
-        Over the rows that no fit has seen.
-    heldout_of_cable : array (n_cables,)
-        The same, cable by cable.
-    """
-
-    rms: float
-    heldout: Interval = field(metadata={"json": _heldout})
+    rms: float  #: over the rows that were fitted
+    heldout: Interval = field(metadata={"json": _heldout})  #: over the rows that no fit has seen
+    #: (n_cables,): the same, cable by cable
     heldout_of_cable: FloatArray = field(metadata={"json": "heldout_rms_of_cable"})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stage:
-    """The model at one point of the search: as declared, then with each effect.
+    """The model at one point of the search: as declared, then with each effect."""
 
-    Parameters
-    ----------
-    label : str
-        What was added.
-    settings : tuple of Setting
-        All effects with their values.
-    length_m, tension_N : Error or None
-        None where nothing of the kind was measured.
-    n_not_held : int
-        Rows that this model cannot hold: they are in no error, of whatever stage.
-    """
-
-    label: str
-    settings: tuple[Setting, ...] = field(metadata={"json": None})
-    length_m: Error | None
+    label: str  #: what was added
+    settings: tuple[Setting, ...] = field(metadata={"json": None})  #: all effects with their values
+    length_m: Error | None  #: none where nothing of the kind was measured
     tension_N: Error | None
+    #: rows that this model cannot hold: they are in no error, of whatever stage
     n_not_held: int = field(default=0, metadata={"json": "rows_not_held"})
 
 
@@ -118,24 +98,15 @@ def _before_and_after(errors: tuple[float, float]) -> dict[str, object]:
 
 @dataclass(frozen=True, slots=True)
 class SessionError:
-    """Root mean square errors of one session on rows that no fit has seen, before and after.
+    """Root mean square errors of one session on rows that no fit has seen, before and after."""
 
-    Parameters
-    ----------
-    session : int
-        Its number, from 1.
-    n_rows, n_heldout : int
-        Its rows, and those of them that were held out.
-    length_m, tension_N : (float, float)
-        Before and after [m, N]; NaN where none were measured.
-    """
-
-    session: int
+    session: int  #: its number, from 1
+    #: its rows, and those of them that were held out
     n_rows: int = field(metadata={"json": "rows"})
     n_heldout: int = field(metadata={"json": "heldout"})
     length_m: tuple[float, float] = field(
         metadata={"json": lambda e: {"length_m": _before_and_after(e)}}
-    )
+    )  #: before and after [m, N]; NaN where none were measured
     tension_N: tuple[float, float] = field(
         metadata={"json": lambda e: {"tension_N": _before_and_after(e)}}
     )
@@ -214,7 +185,7 @@ def bootstrap(unseen: FloatArray, block: IntArray) -> Interval:
     third = thirds_of(block)
     sums = np.array([[square[third == k].sum(), count[third == k].sum()] for k in np.unique(third)])
     rng = np.random.default_rng(0)
-    draw = rng.integers(len(sums), size=(_DRAWS, len(sums)))
+    draw = rng.integers(len(sums), size=(_BOOTSTRAP_DRAWS, len(sums)))
     total = sums[draw].sum(axis=1)
     low, high = np.quantile(np.sqrt(total[:, 0] / np.maximum(total[:, 1], 1)), [0.025, 0.975])
     return Interval(rms(unseen), float(low), float(high))
@@ -237,26 +208,16 @@ def _error(residual: FloatArray, heldout: BoolArray) -> Error | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Foretold:
-    """Root mean square errors of forward statics over rows that no fit has seen.
+class ForwardError:
+    """Root mean square errors of forward statics over rows that no fit has seen."""
 
-    Parameters
-    ----------
-    n_rows, n_solved : int
-        Held-out rows with all lengths, and those of them in which a balance was found.
-    position_m : Interval
-        Distance of the platform from where it was [m].
-    turn_rad : Interval or None
-        Angle of the platform against where it was [rad]; None for one that cannot turn.
-    tension_N : Interval or None
-        Of the tensions at the winches [N]; None where none were measured.
-    """
-
+    #: held-out rows with all lengths, and those of them in which a balance was found
     n_rows: int = field(metadata={"json": "rows"})
     n_solved: int = field(metadata={"json": "solved"})
-    position_m: Interval
+    position_m: Interval  #: distance of the platform from where it was [m]
+    #: angle of the platform against where it was [rad]; None for one that cannot turn
     turn_rad: Interval | None
-    tension_N: Interval | None
+    tension_N: Interval | None  #: of the tensions at the winches [N]; None where none were measured
 
 
 def with_sound_lengths(problem: Problem, settings: Sequence[Setting]) -> BoolArray:
@@ -266,7 +227,9 @@ def with_sound_lengths(problem: Problem, settings: Sequence[Setting]) -> BoolArr
     return np.asarray(np.isfinite(residual[:, :n]).all(axis=1))
 
 
-def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -> Foretold | None:
+def forward_error(
+    problem: Problem, settings: Sequence[Setting], chosen: BoolArray
+) -> ForwardError | None:
     """Return how well lengths alone foretell pose and tensions; None without any row or pose.
 
     Parameters
@@ -305,7 +268,7 @@ def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -
             turn[own, 0] = _turn_rad(reached, poses)
     block = block_of(len(chosen))[rows]
     is_point_mass = problem.predict.machine.robot.is_point_mass
-    return Foretold(
+    return ForwardError(
         n_rows=rows.size,
         n_solved=n_solved,
         position_m=bootstrap(away[rows], block),
