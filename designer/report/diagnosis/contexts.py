@@ -1,12 +1,14 @@
 """What the templates of a diagnosis get: numbers and domain objects; None for no section.
 
-Beside it every template of a diagnosis gets `shared`.
+Beside it every template of a diagnosis gets `shared`. Each figure is drawn when a template first
+asks for it, and once.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from itertools import groupby
 
 import numpy as np
@@ -16,11 +18,11 @@ from designer.diagnosis.free_poses import TAKEN_UP
 from designer.diagnosis.result import MOST_SCATTER, Diagnosis, Finding
 from designer.diagnosis.search import EffectTrial
 from designer.diagnosis.statistics import SIGNIFICANCE
+from designer.diagnosis.structure import Carrier
 from designer.report import format as fmt
-from designer.report.diagnosis.drawings import Drawings
-from designer.report.diagnosis.quantity import quantities
-from designer.report.diagnosis.words import grouped
-from designer.report.document import MOST_ROWS
+from designer.report.diagnosis.words import grouped, quantities
+from designer.report.document import MOST_ROWS, Drawing, vector
+from designer.report.figures.diagnosis import Layout, carriers_chart, errors_chart, rows_chart
 
 Context = Mapping[str, object]
 
@@ -242,3 +244,58 @@ def data(diagnosis: Diagnosis) -> Context:
 def assumptions(_: Diagnosis) -> Context:
     """What the diagnosis rests on."""
     return {}
+
+
+# Figures.
+
+_MAX_PANELS = 4
+"""Panels side by side that are still wide enough to be read."""
+_MAX_ON_FIRST_PAGE = 3
+"""The same, in the panel of the first page."""
+
+
+class Drawings:
+    """Figures by name; None where nothing is drawn."""
+
+    def __init__(self, diagnosis: Diagnosis) -> None:
+        self._diagnosis = diagnosis
+
+    @cached_property
+    def errors(self) -> Drawing | None:
+        """The error at each stage."""
+        return vector(errors_chart(self._diagnosis))
+
+    @cached_property
+    def rows(self) -> Drawing | None:
+        """The residual of every reading over the rows."""
+        return vector(rows_chart(self._diagnosis))
+
+    @cached_property
+    def strongest(self) -> Drawing | None:
+        """The residual against what it goes with most, for the first page."""
+        diagnosis = self._diagnosis
+        structure = diagnosis.structure_after
+        carriers = diagnosis.structure_before.carriers
+        if diagnosis.is_unexplained:
+            carriers = structure.present or structure.carriers
+        layout: Layout = "overlaid" if diagnosis.findings else "after"
+        return self._carriers(carriers[:_MAX_ON_FIRST_PAGE], "diagnosis-first", layout)
+
+    @cached_property
+    def carriers_before(self) -> Drawing | None:
+        """The residual against what it went with before."""
+        carriers = self._diagnosis.structure_before.carriers[:_MAX_PANELS]
+        layout: Layout = "stacked" if self._diagnosis.findings else "after"
+        return self._carriers(carriers, "diagnosis-carriers", layout)
+
+    @cached_property
+    def carriers_after(self) -> Drawing | None:
+        """What is left; None without findings, as that is the whole residual."""
+        if not self._diagnosis.findings:
+            return None
+        carriers = self._diagnosis.structure_after.carriers[:_MAX_PANELS]
+        return self._carriers(carriers, "diagnosis-left", "after")
+
+    def _carriers(self, carriers: Sequence[Carrier], key: str, layout: Layout) -> Drawing | None:
+        names = [carrier.name for carrier in carriers]
+        return vector(carriers_chart(self._diagnosis, names, key, layout)) if names else None
