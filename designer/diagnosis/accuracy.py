@@ -143,7 +143,7 @@ def errors_of_sessions(
     answer = []
     for number in np.unique(session).tolist():
         unseen = heldout & (session == number)
-        kinds = zip(*(np.hsplit(each[unseen], 2) for each in (before, after)), strict=True)
+        kinds = zip(*(np.hsplit(residual[unseen], 2) for residual in (before, after)), strict=True)
         lengths, tensions = ((rms(was), rms(now)) for was, now in kinds)
         count = int((session == number).sum())
         answer.append(SessionError(number, count, int(unseen.sum()), lengths, tensions))
@@ -249,23 +249,23 @@ def forward_error(
     away, turn = np.full((2, measured.n_rows, 1), np.nan)
     n_solved = 0
     for of_machine, machine in problem.predict.machines(settings):
-        own = np.flatnonzero(of_machine & chosen)
-        if not own.size:
+        places = np.flatnonzero(of_machine & chosen)
+        if not places.size:
             continue
-        force, poses = added_force_N(machine, measured), placed.poses.part(own)
+        force, poses = added_force_N(machine, measured), placed.poses.part(places)
         forward_statics = solve_forward(
             machine.robot,
             machine.cables,
-            true.length_m[own],
+            true.length_m[places],
             poses,
-            None if force is None else force[own],
+            None if force is None else force[places],
         )
         reached = forward_statics.poses
         n_solved += int(forward_statics.statics.is_solved.sum())
-        away[own, 0] = np.linalg.norm(reached.position_m - poses.position_m, axis=-1)
-        tension[own] = true.tension_N[own] - forward_statics.statics.exit_tension_N
+        away[places, 0] = np.linalg.norm(reached.position_m - poses.position_m, axis=-1)
+        tension[places] = true.tension_N[places] - forward_statics.statics.exit_tension_N
         if not machine.robot.is_point_mass:
-            turn[own, 0] = _turn_rad(reached, poses)
+            turn[places, 0] = _turn_rad(reached, poses)
     block = block_of(len(chosen))[rows]
     is_point_mass = problem.predict.machine.robot.is_point_mass
     return ForwardError(

@@ -105,9 +105,9 @@ def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
     change = np.full((len(residual), len(pairs)), np.nan)
     change[:, has_slope] = _changes(slopes, np.nan_to_num(weight * residual))
     n_rows = int(np.isfinite(residual).any(axis=1).sum())
-    told = told_by(slopes, n_rows)
+    identifiability = identifiability_of(slopes, n_rows)
     std = fit.std.copy()
-    std[has_slope] = np.where(told.is_settled, std[has_slope], np.inf)
+    std[has_slope] = np.where(identifiability.is_settled, std[has_slope], np.inf)
     covariance = np.where(np.isfinite(np.outer(std, std)), fit.covariance, np.nan)
     sizes = np.abs(np.nan_to_num(change * typical / std))
     row, is_moved = np.argmax(sizes, axis=0), has_slope & np.isfinite(std)
@@ -123,13 +123,13 @@ def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
             for k, pair in enumerate(pairs)
         ),
         covariance,
-        told.condition,
-        told.observability,
+        identifiability.condition,
+        identifiability.observability,
         tuple(problem.measured.row_numbers[(doubt > 1.0).any(axis=1)].tolist()),
     )
 
 
-class Told(NamedTuple):
+class Identifiability(NamedTuple):
     """What slopes tell of parameters; condition and observability as in `Calibration`."""
 
     is_settled: BoolArray  #: (n_parameters,): which have a value of their own
@@ -140,7 +140,7 @@ class Told(NamedTuple):
     observability: float
 
 
-def told_by(slopes: FloatArray, n_rows: int) -> Told:
+def identifiability_of(slopes: FloatArray, n_rows: int) -> Identifiability:
     """Return what slopes (…, n_parameters), in units of noise per typical change, tell."""
     triangle = np.linalg.qr(slopes.reshape(-1, slopes.shape[-1]), mode="r")
     _, singular, directions = np.linalg.svd(triangle)
@@ -153,7 +153,7 @@ def told_by(slopes: FloatArray, n_rows: int) -> Told:
         mean = float(np.exp(np.mean(np.log(singular))))
     condition = float(singular[0] / singular[-1]) if singular[-1] > 0.0 else math.inf
     settled = np.where(is_settled, std, np.inf)
-    return Told(is_settled, settled, condition, mean / math.sqrt(n_rows))
+    return Identifiability(is_settled, settled, condition, mean / math.sqrt(n_rows))
 
 
 def _changes(slopes: FloatArray, residual: FloatArray) -> FloatArray:

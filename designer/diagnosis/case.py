@@ -10,7 +10,7 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import fit
-from designer.diagnosis.free_poses import FreePredictor, first_poses, in_a_held_frame
+from designer.diagnosis.free_poses import FreePredictor, first_poses, with_frame_held
 from designer.diagnosis.problem import Predictor, Problem, SessionsPredictor
 from designer.diagnosis.statistics import heldout_rows, spread
 from designer.effects.effect import NEEDS, Effect, Setting, as_built, frame_size_m
@@ -57,14 +57,14 @@ class Case:
         def n_held(measured: Measured) -> int:
             return int((~np.isnan(predict.at(measured)(()).length_m).any(axis=1)).sum())
 
-        n_rows, held = self.measured.n_rows, n_held(self.measured)
-        if 2 * held < n_rows:
-            problem = f"the robot as declared can hold {held} of {n_rows} poses"
+        n_rows, n_rows_held = self.measured.n_rows, n_held(self.measured)
+        if 2 * n_rows_held < n_rows:
+            problem = f"the robot as declared can hold {n_rows_held} of {n_rows} poses"
             expected = "poses between its exit points, in the same frame and unit"
             views = left_handed(self.machine.robot, self.measured)
-            most, frame = max((n_held(view), frame) for frame, view in views)
-            if 2 * most > n_rows + held:
-                expected += f"; with {frame}, it can hold {most}"
+            n_held_mirrored, frame = max((n_held(view), frame) for frame, view in views)
+            if 2 * n_held_mirrored > n_rows + n_rows_held:
+                expected += f"; with {frame}, it can hold {n_held_mirrored}"
             raise self.fault(problem, expected)
 
 
@@ -93,28 +93,28 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     settings = [*declared, *_session_settings(study, measurements, machine)]
     fixed = [s for s in settings if not is_unknown(s.effect, measurements)]
     fixed_effects = {setting.effect.key: setting.effect for setting in fixed}
-    known = with_those_of_sessions(study.known_effects.of(built), measurements)
-    effects = [e for e in known if e.key not in fixed_effects]
+    possible = with_those_of_sessions(study.known_effects.of(built), measurements)
+    effects = [e for e in possible if e.key not in fixed_effects]
     recorded = _recorded(study, measured)
     if built.robot.pulley_radius_m or "pulley_radius" in measurements.all_unknown:
         recorded |= {"pulleys"}
-    ongoing = [e for e in (*effects, *fixed_effects.values()) if goes_on(e)]
-    stopped = {e.key: GOES_ON for e in ongoing if measurements.sessions}
+    ongoing = [e for e in (*effects, *fixed_effects.values()) if persists(e)]
+    stopped = {e.key: PERSISTS for e in ongoing if measurements.sessions}
     skipped = {
         e.key: stopped.get(e.key) or _missing(e, recorded) or _too_few(e, measured) for e in effects
     }
     visible = [e for e in effects if not skipped[e.key]]
     unknown = [_less_known_zero(e, fixed) for e in visible if is_unknown(e, measurements)]
     n_sessions = len(measurements.sessions)
-    own = [beside_given(e, unknown, n_sessions) for e in unknown]
-    given = tuple(_as_unknown(e, measurements, machine) for e in own if e.parameters)
+    unknown_alone = [less_given(e, unknown, n_sessions) for e in unknown]
+    given = tuple(_as_unknown(e, measurements, machine) for e in unknown_alone if e.parameters)
     if not measured.has_poses:
-        given, note = in_a_held_frame(given, machine.robot, measured)
+        given, note = with_frame_held(given, machine.robot, measured)
         measured = replace(measured, notes=(*measured.notes, *note))
     given_keys = {e.key for e in given}
-    others = [e for e in visible if e.key not in given_keys]
-    beside = [beside_given(e, given, n_sessions) for e in others]
-    skipped |= {e.key: "is a part of what is unknown" for e in beside if not e.parameters}
+    candidates = [e for e in visible if e.key not in given_keys]
+    unshared = [less_given(e, given, n_sessions) for e in candidates]
+    skipped |= {e.key: "is a part of what is unknown" for e in unshared if not e.parameters}
     lacking = {
         e.key: stopped.get(e.key) or _missing_in_sight(e, recorded) for e in fixed_effects.values()
     }
@@ -123,7 +123,7 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         measurements,
         machine,
         measured,
-        candidates=tuple(e for e in beside if e.parameters),
+        candidates=tuple(e for e in unshared if e.parameters),
         given=given,
         skipped=tuple((key, why) for key, why in skipped.items() if why),
         fixed=tuple(s for s in fixed if not lacking[s.effect.key]),
@@ -319,11 +319,11 @@ def may_be_of_session(effect: Effect) -> bool:
     return effect.cause == "setting_up" or effect.id in ("anchor_offset", "tension_bias")
 
 
-GOES_ON = "goes on from session to session, and their clocks do not tell how far"
+PERSISTS = "goes on from session to session, and their clocks do not tell how far"
 """Why an effect is not looked for."""
 
 
-def goes_on(effect: Effect) -> bool:
+def persists(effect: Effect) -> bool:
     """Tell whether an effect, such as creep, counts the time since it began."""
     return "time" in effect.needs and not effect.needs_motion
 
@@ -332,30 +332,30 @@ def is_unknown(effect: Effect, measurements: Measurements) -> bool:
     """Tell whether an effect is unknown from the start, of the machine or of its session."""
     if effect.session is None:
         return effect.is_among(measurements.unknown)
-    own = measurements.sessions[effect.session - 1]
-    return replace(effect, session=None).is_among(own.unknown)
+    of_session = measurements.sessions[effect.session - 1]
+    return replace(effect, session=None).is_among(of_session.unknown)
 
 
 def with_those_of_sessions(effects: Sequence[Effect], measurements: Measurements) -> list[Effect]:
     """Return effects, then those that may be, or are unknown, of one session, for each of them."""
     numbers = range(1, len(measurements.sessions) + 1)
-    own = [(effect, effect.of_session(k)) for k in numbers for effect in effects]
+    variants = [(effect, effect.of_session(k)) for k in numbers for effect in effects]
     return [
         *effects,
-        *(e for effect, e in own if may_be_of_session(effect) or is_unknown(e, measurements)),
+        *(e for effect, e in variants if may_be_of_session(effect) or is_unknown(e, measurements)),
     ]
 
 
-def beside_given(effect: Effect, given: Sequence[Effect], n_sessions: int) -> Effect:
+def less_given(effect: Effect, given: Sequence[Effect], n_sessions: int) -> Effect:
     """Return an effect without the numbers that are unknown wherever it acts.
 
     That is what another effect has as unknown of the machine, of its own session, or of every
     session, and not of another cable.
     """
-    here = [e for e in given if e is not effect and e.cable in (None, effect.cable)]
-    ids = {e.id for e in here if e.session in (None, effect.session)}
+    same_cable = [e for e in given if e is not effect and e.cable in (None, effect.cable)]
+    ids = {e.id for e in same_cable if e.session in (None, effect.session)}
     if effect.session is None and n_sessions:
-        of_each = [{e.id for e in here if e.session == k + 1} for k in range(n_sessions)]
+        of_each = [{e.id for e in same_cable if e.session == k + 1} for k in range(n_sessions)]
         of_every = set.intersection(*of_each)
         if effect.id in of_every:
             return replace(effect, parameters=())

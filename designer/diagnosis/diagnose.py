@@ -19,7 +19,7 @@ from designer.diagnosis.accuracy import (
 from designer.diagnosis.calibration import calibration_of
 from designer.diagnosis.case import Case, case_of, first_noise, rescaled
 from designer.diagnosis.fit import Fit, fit, with_places
-from designer.diagnosis.free_poses import FreePredictor, taken_up
+from designer.diagnosis.free_poses import FreePredictor, absorbed_by_poses
 from designer.diagnosis.hold import Gain, Outcome, keep_what_helps, search_and_hold
 from designer.diagnosis.plan import Proposal, propose
 from designer.diagnosis.problem import Problem, imbalance_of
@@ -32,7 +32,7 @@ from designer.diagnosis.structure import (
     smooth_correction,
     structure_left,
     whereabouts,
-    with_given_up,
+    with_gross_errors,
 )
 from designer.effects.effect import Effect
 from designer.effects.platform_loads import PLATFORM_FORCE
@@ -64,7 +64,7 @@ def diagnose_study(
     measurements = study.measurements
     assert measurements is not None
     asked_for = {effect.id for effect in study.effects} | set(measurements.all_unknown)
-    asked_for |= {effect.id for own in study.session_effects for effect in own}
+    asked_for |= {effect.id for effects in study.session_effects for effect in effects}
     while True:
         try:
             return diagnose(case_of(study, measurements, measured), progress)
@@ -101,24 +101,24 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     # Whatever is decided on the way is decided without them: noise, effects, what is withdrawn.
     seen = replace(case, measured=measured.without_readings(heldout))
     if not measured.has_poses:
-        hidden = _taken_up(seen, ~heldout)
+        hidden = _absorbed_by_poses(seen, ~heldout)
         case, seen = _without(case, hidden), _without(seen, hidden)
     outcome = _with_settled_noise(seen, ~heldout, progress)
     problem = Problem(measured, predict, outcome.problem.noise)
     outcome, gains = keep_what_helps(outcome, problem, heldout, progress)
     # What is told of the model shall not depend on the path that the search took to it.
     problem = replace(problem, predict=predict.at(measured))
-    return _told(case, outcome, problem, gains, heldout, progress)
+    return _diagnosis_of(case, outcome, problem, gains, heldout, progress)
 
 
-def _taken_up(seen: Case, rows: BoolArray) -> dict[str, str]:
+def _absorbed_by_poses(seen: Case, rows: BoolArray) -> dict[str, str]:
     """Return the effects that estimated poses take up, each with the reason."""
     noise = first_noise(seen.measurements, seen.measured, seen.predictor(), rows)
     unfitted = Problem(seen.measured, seen.predictor(), noise)
-    return dict(taken_up(unfitted, (*seen.given, *seen.candidates), (), rows))
+    return dict(absorbed_by_poses(unfitted, (*seen.given, *seen.candidates), (), rows))
 
 
-def _told(
+def _diagnosis_of(
     case: Case,
     outcome: Outcome,
     problem: Problem,
@@ -146,7 +146,9 @@ def _told(
         _finding(outcome, e, gains[e.key], rivals[e.key] | shared) for e in outcome.found
     )
     findings = _with_one_force(findings)
-    structure = with_given_up(outcome.structure, after, problem.residual(()), measured.row_numbers)
+    structure = with_gross_errors(
+        outcome.structure, after, problem.residual(()), measured.row_numbers
+    )
     trend = correction = None
     if structure.present:
         name = structure.present[0].name
@@ -219,8 +221,10 @@ def _with_one_force(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
     One that changes with the place: a constant one does what most of them do, and heavier ropes
     pull the more, the farther away the platform is.
     """
-    others = {finding.effect.id for finding in findings if PLATFORM_FORCE.id not in finding.rivals}
-    if len(findings) < 3 or others != {"linear_mass"}:
+    exceptions = {
+        finding.effect.id for finding in findings if PLATFORM_FORCE.id not in finding.rivals
+    }
+    if len(findings) < 3 or exceptions != {"linear_mass"}:
         return findings
     return tuple(
         replace(f, rivals=tuple(dict.fromkeys([*f.rivals, PLATFORM_FORCE.id]))) for f in findings
@@ -243,7 +247,7 @@ def _finding(
         if not p.is_shape
     )
     doubt = "no value of it is further from doing nothing than twice its standard deviation"
-    offsets = [each.value for each in estimate.values()] if effect.id == "tension_bias" else []
+    offsets = [number.value for number in estimate.values()] if effect.id == "tension_bias" else []
     is_alike = len(offsets) > 2 and bool(np.std(offsets) < _ALIKE * abs(np.mean(offsets)))
     common = "all cells are off alike, as by a force that all cables share"
     force = [PLATFORM_FORCE.id] * (is_alike and PLATFORM_FORCE.id not in rivals)

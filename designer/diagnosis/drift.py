@@ -20,7 +20,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import HUBER, Fit, jacobian, with_places
 from designer.diagnosis.problem import Problem
-from designer.diagnosis.statistics import beside, orthonormal, without_outliers
+from designer.diagnosis.statistics import orthonormal, outside_span, without_outliers
 from designer.effects.effect import Effect, Setting
 from designer.effects.load_cells import TENSION_BIAS
 from designer.effects.winches import LENGTH_OFFSET
@@ -37,7 +37,9 @@ _LEAST_LEFT = 0.1
 """Of an error; what a row's unknowns take up whole is left to the digits of a slope."""
 
 
-def beside_drift(problem: Problem, rest: Fit, model: Fit, effect: Effect, rows: BoolArray) -> float:
+def gain_in_drift(
+    problem: Problem, rest: Fit, model: Fit, effect: Effect, rows: BoolArray
+) -> float:
     """Return the gain of an effect in a noise that may drift, over rows (n_rows,) that were fitted.
 
     In units of the variance, and for as many independent readings as there are; ``rest`` is fitted
@@ -61,10 +63,10 @@ def beside_drift(problem: Problem, rest: Fit, model: Fit, effect: Effect, rows: 
     # Where coordinates of poses are among the channels, how their errors are left is not told.
     is_mixed = problem.predict.row_unknowns and slopes.shape[1] == len(problem.sigma)
     shares = _shares_left(problem, model) if is_mixed else None
-    return gain_beside_drift(before, after, slopes, own, free, shares)
+    return linear_gain_in_drift(before, after, slopes, own, free, shares)
 
 
-def gain_beside_drift(
+def linear_gain_in_drift(
     before: FloatArray,
     after: FloatArray,
     slopes: FloatArray,
@@ -95,8 +97,8 @@ def gain_beside_drift(
     residuals = np.where(is_read[..., None], np.stack([after, before], axis=-1), 0.0)
     left_of = np.full(is_read.shape[1], free)
     if shares is not None:  # of the variance, in rows that were fitted
-        kept = np.sum(shares[np.flatnonzero(is_read.any(axis=1))] ** 2, axis=-1)
-        left_of = np.maximum(kept.mean(axis=0), _LEAST_LEFT)
+        squares = np.sum(shares[np.flatnonzero(is_read.any(axis=1))] ** 2, axis=-1)
+        left_of = np.maximum(squares.mean(axis=0), _LEAST_LEFT)
     decay, share, variance = noise = _noise_of(residuals[..., 0], slopes, is_read, left_of)
     columns = np.concatenate([residuals, slopes], axis=-1)
     if shares is None:
@@ -105,13 +107,13 @@ def gain_beside_drift(
     else:
         white = _shared_innovations(columns, is_read, shares, noise)
     flat = white.reshape(-1, columns.shape[-1])
-    others = orthonormal(flat[:, 2:][:, ~own])
-    after_white, before_white, *_ = beside(others, flat).T
-    further = orthonormal(beside(others, flat[:, 2:][:, own]))
-    left = beside(further, after_white)
-    gain = float(before_white @ before_white) - float(left @ left)
+    basis = orthonormal(flat[:, 2:][:, ~own])
+    after_white, before_white, *_ = outside_span(basis, flat).T
+    further = orthonormal(outside_span(basis, flat[:, 2:][:, own]))
+    unexplained = outside_span(further, after_white)
+    gain = float(before_white @ before_white) - float(unexplained @ unexplained)
     # Readings of one row share the error of its pose: their sums tell the doubt (Liang and Zeger).
-    scores = np.sum((further * left[:, None]).reshape(*is_read.shape, -1), axis=1)
+    scores = np.sum((further * unexplained[:, None]).reshape(*is_read.shape, -1), axis=1)
     inflation = np.sum(scores**2) / max(further.shape[1], 1)
     return gain / max(float(inflation), 1.0)
 
@@ -122,10 +124,10 @@ def _shares_left(problem: Problem, model: Fit) -> FloatArray:
     What is unknown in a row takes up a part of the errors of its readings, another one in each
     pose: as if a sensor that drifts slowly were off by another amount in each.
     """
-    machine, known = problem.predict.machine, [setting.effect for setting in model.settings]
+    machine, fitted = problem.predict.machine, [setting.effect for setting in model.settings]
     zeros = [e for zero in (LENGTH_OFFSET, TENSION_BIAS) for e in zero.on(machine)]
-    further = [e for e in zeros if e not in known]
-    effects = [*known, *further]
+    further = [e for e in zeros if e not in fitted]
+    effects = [*fitted, *further]
     at_zero = [e.neutral[p.name] for e in further for p in e.parameters]
     slopes = jacobian(problem, effects, np.concatenate([model.vector, at_zero]))
     places = {
@@ -151,8 +153,8 @@ def _shared_innovations(
     foretold, doubt = np.zeros(columns.shape[1:]), np.diag(stationary)
     white = np.zeros_like(columns)
     for k, (row, read) in enumerate(zip(columns, is_read, strict=True)):
-        left, size, _ = np.linalg.svd(np.where(read[:, None], shares[k], 0.0))
-        basis = left[:, size > _LEAST_LEFT]
+        directions, size, _ = np.linalg.svd(np.where(read[:, None], shares[k], 0.0))
+        basis = directions[:, size > _LEAST_LEFT]
         mixing = basis.T @ np.where(read[:, None], shares[k], 0.0)
         step = basis.T @ row - mixing @ foretold
         covariance = mixing @ (doubt + np.diag((1.0 - share) * variance)) @ mixing.T

@@ -141,19 +141,19 @@ def fit(
     if not effects:
         loss = float(huber(problem.misfit(())[is_used]).sum())
         return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(is_used))
-    known = {s.effect.key for s in start}
+    known_keys = {s.effect.key for s in start}
     several = [e for e in effects if e.starts or e.starts_from]  # valleys to start in
-    fresh = [e for e in several if anew or e.key not in known]
+    fresh = [e for e in several if anew or e.key not in known_keys]
     # Evaluations from anywhere, and from near the end.
     iterations = 80 if thorough or not start or (anew and fresh) else 12
     valleys = _starts(problem, effects, start, fresh)
-    is_known = {effect.key for effect in fresh} <= known
-    near = [starting_vector(effects, start, {})] if is_known or not valleys else []
-    starts = [*valleys, *near]
+    is_known = {effect.key for effect in fresh} <= known_keys
+    present = [starting_vector(effects, start, {})] if is_known or not valleys else []
+    starts = [*valleys, *present]
     if anew or not start:  # the present values promise most, but may be in the wrong valley
         starts = [
             vector
-            for group in (valleys, near)
+            for group in (valleys, present)
             for vector in _promising(problem, effects, is_used, group)
         ]
     fits = [_fit_from(problem, effects, is_used, v, iterations, thorough=thorough) for v in starts]
@@ -190,8 +190,8 @@ def _promising(
     """
     reached: dict[tuple[float, float], FloatArray] = {}
     for vector in starts:
-        promise, loss, there = _stepped(problem, effects, is_used, vector)
-        reached.setdefault((round(np.log(promise + 1.0), 2), round(np.log(loss + 1.0), 2)), there)
+        promise, loss, end = _stepped(problem, effects, is_used, vector)
+        reached.setdefault((round(np.log(promise + 1.0), 2), round(np.log(loss + 1.0), 2)), end)
     least = min((promise for promise, _ in reached), default=0.0)
     return [reached[key] for key in sorted(reached)[:2] if key[0] < least + 0.1]
 
@@ -206,13 +206,13 @@ def _stepped(
     for _ in range(8):
         slopes = jacobian(problem, effects, vector, nearly=True)[is_used]
         promised, step = _linear_step(residual, slopes)
-        there = np.clip(vector + step, low, high)
-        residual_there = problem.misfit(settings_at(effects, there))[is_used]
+        trial = np.clip(vector + step, low, high)
+        residual_there = problem.misfit(settings_at(effects, trial))[is_used]
         loss_there = float(huber(residual_there).sum())
         promise = min(promise, promised)
         if loss_there >= loss:
             break
-        vector, residual = there, residual_there
+        vector, residual = trial, residual_there
         is_over = loss_there > 0.8 * loss
         loss = loss_there
         if is_over:
@@ -235,7 +235,7 @@ def jacobian(
     )
 
 
-def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> FloatArray:
+def _slopes(problem: Problem, settings: Sequence[Setting], moving: Setting) -> FloatArray:
     """Return the slopes of the misfit in the parameters of one of the settings.
 
     A row that the model holds on one side only tells its slope there; one that it does not hold at
@@ -244,11 +244,11 @@ def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> Floa
     is_read = problem.measured.is_read
     predicted = problem.in_noise(settings)
     slopes = []
-    for p in own.effect.parameters:
+    for p in moving.effect.parameters:
         if p.is_step_time:
             slopes.append(np.where(is_read, 0.0, np.nan))
             continue
-        value = own.values[p.name]
+        value = moving.values[p.name]
         # So short that one side will do, and far above the solver's residual.
         step = 1e-3 * max(p.typical, 0.1 * abs(value - p.neutral))
         slope = np.full(is_read.shape, np.nan)
@@ -256,8 +256,8 @@ def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> Floa
             is_lost = np.isnan(slope) & is_read & ~np.isnan(predicted)
             if not is_lost.any():
                 break
-            there = replace(own, values={**own.values, p.name: moved})
-            settings_there = tuple(there if s is own else s for s in settings)
+            at_step = replace(moving, values={**moving.values, p.name: moved})
+            settings_there = tuple(at_step if s is moving else s for s in settings)
             change = problem.in_noise(settings_there) - predicted
             if problem.predict.row_unknowns:
                 size = np.nan_to_num(np.abs(change)).max(axis=1)
@@ -275,7 +275,7 @@ class LinearTrial(NamedTuple):
 
     without: float
     loss: float
-    views: tuple[View, ...] = ()
+    views: tuple[StartingPoint, ...] = ()
 
     @property
     def gain(self) -> float:
@@ -305,22 +305,22 @@ def linear_trial(
     """
     is_used = problem.used(rows)
     problem.predict.trust_as(present.settings, effects, problem.noise)
-    others = [s.effect for s in present.settings]
-    known = np.empty((int(is_used.sum()), 0))
-    if others:
-        known = jacobian(problem, others, present.vector, nearly=True)[is_used]
+    present_effects = [s.effect for s in present.settings]
+    known_slopes = np.empty((int(is_used.sum()), 0))
+    if present_effects:
+        known_slopes = jacobian(problem, present_effects, present.vector, nearly=True)[is_used]
     losses, views = [], []
     start = _starts(problem, effects, present.settings, [effect])
     start = start or [starting_vector(effects, present.settings, {})]
     for vector in (starting_vector(effects, present.settings, effect.neutral), *start):
         settings = settings_at(effects, vector)
-        (own,) = (s for s in settings if s.effect.key == effect.key)
-        slopes = _slopes(problem, settings, own)[is_used]
+        (added,) = (s for s in settings if s.effect.key == effect.key)
+        slopes = _slopes(problem, settings, added)[is_used]
         residual = problem.misfit(settings)[is_used]
-        losses.append(_linear_step(residual, np.hstack([known, slopes]))[0])
-        views.append(View(own, residual, slopes))
+        losses.append(_linear_step(residual, np.hstack([known_slopes, slopes]))[0])
+        views.append(StartingPoint(added, residual, slopes))
     residual = problem.misfit(present.settings)[is_used]
-    return LinearTrial(_linear_step(residual, known)[0], min(losses), tuple(views))
+    return LinearTrial(_linear_step(residual, known_slopes)[0], min(losses), tuple(views))
 
 
 def _linear_step(residual: FloatArray, slopes: FloatArray) -> tuple[float, FloatArray]:
@@ -355,24 +355,24 @@ def _fit_from(
     parameters = [p for effect in effects for p in effect.parameters]
     low, high = np.array([p.bounds for p in parameters]).T
     inside = np.clip(start, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
-    taken: tuple[FloatArray, FloatArray, FloatArray] | None = None
+    cached: tuple[FloatArray, FloatArray, FloatArray] | None = None
 
     def misfit(vector: FloatArray) -> FloatArray:
         return problem.misfit(settings_at(effects, vector))[mask]
 
     def slopes_at(vector: FloatArray) -> FloatArray:
         """Return slopes; those taken before, as long as the misfit follows them."""
-        nonlocal taken
+        nonlocal cached
         residual = misfit(vector)
-        if taken is not None and not thorough:
-            place, before, slopes = taken
+        if cached is not None and not thorough:
+            place, before, slopes = cached
             foretold = slopes @ (vector - place)
             if np.linalg.norm(residual - before - foretold) < _FORETOLD_RTOL * np.linalg.norm(
                 foretold
             ):
                 return slopes
         slopes = jacobian(problem, effects, vector, nearly=not thorough)[mask]
-        taken = vector.copy(), residual, slopes
+        cached = vector.copy(), residual, slopes
         return slopes
 
     for _ in range(5):  # until distrust of readings and times of steps agree with what is left
@@ -425,8 +425,8 @@ def _step_times(
                 continue
             losses = []
             for value in p.bounds:  # with the step in all rows, then in none
-                there = replace(setting, values={**setting.values, p.name: value})
-                misfit = problem.misfit(tuple(there if s is setting else s for s in settings))
+                at_bound = replace(setting, values={**setting.values, p.name: value})
+                misfit = problem.misfit(tuple(at_bound if s is setting else s for s in settings))
                 losses.append(huber(np.where(mask, misfit, np.nan)).sum(axis=1))
             assert problem.measured.time_s is not None
             best = step_time(problem.measured.time_s, losses[1], losses[0], variance)
@@ -463,13 +463,13 @@ def _doubts(
         ratios = [np.sum(inverse * covariance[columns, columns]) / seen for covariance in clustered]
         inflation[setting.effect.key] = float(max(1.0, *ratios))
     std = np.where(is_unseen, np.inf, np.sqrt(np.maximum(spread, 0.0)) / scale)
-    own = np.sqrt(np.maximum(np.diag(bread), 1e-300))
+    deviation = np.sqrt(np.maximum(np.diag(bread), 1e-300))
     with np.errstate(invalid="ignore"):  # what has no slope has no covariance
-        covariance = bread / np.outer(own, own) * np.outer(std, std)
+        covariance = bread / np.outer(deviation, deviation) * np.outer(std, std)
     return std, inflation, wald, covariance
 
 
-class View(NamedTuple):
+class StartingPoint(NamedTuple):
     """An effect where a fit may start: its values, the residual (n,) there, and slopes (n, p)."""
 
     setting: Setting
@@ -551,8 +551,8 @@ def steepness(problem: Problem, settings: Sequence[Setting]) -> FloatArray:
         steps = np.zeros((measured.n_rows, robot.degrees_of_freedom))
         for side in (step_m, -step_m):  # the larger: the model may hold a row on one side only
             steps[:, k] = side
-            there = replace(measured, poses=moved_poses(robot, measured.poses, steps))
-            change = predict.at(there)(settings, problem.noise).stacked - predicted
+            at_step = replace(measured, poses=moved_poses(robot, measured.poses, steps))
+            change = predict.at(at_step)(settings, problem.noise).stacked - predicted
             slope = np.nan_to_num(change / side)
             slopes[..., k] = np.where(np.abs(slope) > np.abs(slopes[..., k]), slope, slopes[..., k])
     steepest = np.max(np.abs(slopes[:, :n_cables]), axis=(1, 2))

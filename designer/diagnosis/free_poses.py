@@ -33,7 +33,7 @@ from designer.model.robot import Poses, Robot
 from designer.statics.forward import moved_poses
 from designer.statics.geometry import cable_geometry
 
-TAKEN_UP = "taken up by the estimated poses"
+ABSORBED = "taken up by the estimated poses"
 """Why an effect cannot be told."""
 _CANDIDATES = 4000
 """Places to start from: neighbours are a sixteenth of the region's side apart."""
@@ -112,12 +112,12 @@ class FreePredictor(Predictor):
         if (
             _loss(residual).sum() > _FAR_LOSS * least
         ):  # from far away a row may stay in another balance
-            there = self._left_at(best_poses, settings, noise)[1]
-            poses, slopes = _either(_loss(there) < _loss(residual), best_poses, poses), None
+            at_best = self._left_at(best_poses, settings, noise)[1]
+            poses, slopes = _select(_loss(at_best) < _loss(residual), best_poses, poses), None
             answer, residual = self._left_at(poses, settings, noise)
         is_lost = np.asarray((np.abs(residual) >= _UNHELD).any(axis=1))
         if is_lost.any():  # without a slope it would never come back
-            poses, slopes = _either(is_lost, self._first, poses), None
+            poses, slopes = _select(is_lost, self._first, poses), None
             answer, residual = self._left_at(poses, settings, noise)
         share = np.ones(len(residual))
         for _ in range(12):  # turns at most
@@ -136,7 +136,7 @@ class FreePredictor(Predictor):
                 trial = moved_poses(self.machine.robot, poses, share[:, None] * step)
                 answer, residual_trial = self._left_at(trial, settings, noise)
                 closer = _loss(residual_trial) <= _loss(residual)
-                poses = _either(closer, trial, poses)
+                poses = _select(closer, trial, poses)
                 residual = np.where(closer[:, None], residual_trial, residual)
                 share = np.where(closer, np.minimum(1.0, 4.0 * share), 0.25 * share)
                 if not closer.all():  # slopes from elsewhere may lead the wrong way
@@ -228,7 +228,7 @@ def first_poses(machine: Machine, measured: Measured, region: Region) -> Poses:
     return poses if measured.coordinates is None else measured.coordinates.put_into(poses)
 
 
-def taken_up(
+def absorbed_by_poses(
     problem: Problem, effects: Sequence[Effect], unconditional: Sequence[Effect], rows: BoolArray
 ) -> list[tuple[str, str]]:
     """Return effects that poses take up, each with the reason.
@@ -254,7 +254,7 @@ def taken_up(
         gain = float(np.max(np.sum(effect_slopes**2, axis=(0, 1)) * np.square(largest)))
         if chi2.sf(gain, len(effect.parameters)) * len(effects) > SIGNIFICANCE:
             size = f"{np.sqrt(gain):.2g} standard deviations in all at its largest plausible value"
-            answer.append((effect.key, f"{TAKEN_UP}: {size}"))
+            answer.append((effect.key, f"{ABSORBED}: {size}"))
     return answer
 
 
@@ -286,7 +286,7 @@ def _loss(values: FloatArray) -> FloatArray:
     return np.asarray(huber(values).sum(axis=1))
 
 
-def _either(mask: BoolArray, poses: Poses, alternative: Poses) -> Poses:
+def _select(mask: BoolArray, poses: Poses, alternative: Poses) -> Poses:
     """Return the poses of one where ``mask`` (n_rows,), else of the other."""
     rotation = poses.rotation
     if rotation.ndim > 2:
@@ -304,7 +304,7 @@ _MOTION_STEP, _LEAST_CHANGE = 1e-4, 1e-3
 """Of a motion [m], for its slopes; and what of it changes no coordinate."""
 
 
-def in_a_held_frame(
+def with_frame_held(
     given: Sequence[Effect], robot: Robot, measured: Measured
 ) -> tuple[tuple[Effect, ...], tuple[str, ...]]:
     """Return what is unknown less the coordinates that hold the frame, and a note that names them.
@@ -325,15 +325,15 @@ def in_a_held_frame(
     has_tensions = bool(np.isfinite(measured.tension_N).any())
     scales = {e.cable for e in given if e.id == "winch_scale"}
     may_grow = scales >= set(_cables(robot)) or any(e.id == "drum_scale" for e in given)
-    left = _motions_left(robot, measured, free, is_level=has_tensions, may_grow=may_grow)
-    held = _held(robot, left)
+    motions = _motions_left(robot, measured, free, is_level=has_tensions, may_grow=may_grow)
+    held = _held_coordinates(robot, motions)
     across = {axis for axis, share in zip(_AXES, np.abs(robot.level[1]), strict=True) if share == 1}
     still = {(cable, axis) for cable in unknown for axis in across if robot.is_planar} | set(held)
-    effects = [_without(effect, still) for effect in given]
+    effects = [_without_held(effect, still) for effect in given]
     names = [f"{axis[0]} of exit point {cable}" for cable, axis in held]
     note = (
         f"the frame is held by {', '.join(names)}, which stay as drawn: nothing read tells "
-        f"{_named(left)}"
+        f"{_motion_names(motions)}"
     )
     return tuple(effect for effect in effects if effect.parameters), (note,) * bool(held)
 
@@ -376,9 +376,9 @@ def _motions_left(
     from scipy.linalg import null_space
 
     motions = _motions(robot, robot.exit_points_m).reshape(7, -1).T
-    told = _changes_read(robot, measured)
+    changes = _changes_read(robot, measured)
     # What poses that are all about alike would tell is lost in the noise.
-    impossible = [motions[~free.ravel()], np.where(np.abs(told) < _LEAST_CHANGE, 0.0, told)]
+    impossible = [motions[~free.ravel()], np.where(np.abs(changes) < _LEAST_CHANGE, 0.0, changes)]
     level = robot.level
     if robot.is_planar:
         impossible += [_rows(level[1], 0), _rows(level[0], 3), _rows(level[2], 3)]
@@ -389,24 +389,24 @@ def _motions_left(
     return np.asarray(null_space(np.concatenate(impossible), rcond=_RANK_RTOL))
 
 
-def _held(robot: Robot, left: FloatArray) -> list[tuple[int, str]]:
+def _held_coordinates(robot: Robot, unread: FloatArray) -> list[tuple[int, str]]:
     """Return coordinates of exit points, as many as motions that change no reading.
 
     The ones that each motion moves most, by a QR decomposition with pivoting.
     """
     from scipy.linalg import qr
 
-    if left.size == 0:
+    if unread.size == 0:
         return []
     motions = _motions(robot, robot.exit_points_m).reshape(7, -1).T
-    order = qr((motions @ left).T, mode="r", pivoting=True)[1]
-    cables, axes = np.divmod(np.sort(order[: left.shape[1]]), 3)
+    order = qr((motions @ unread).T, mode="r", pivoting=True)[1]
+    cables, axes = np.divmod(np.sort(order[: unread.shape[1]]), 3)
     return [(int(cable) + 1, _AXES[axis]) for cable, axis in zip(cables, axes, strict=True)]
 
 
-def _named(left: FloatArray) -> str:
+def _motion_names(motions: FloatArray) -> str:
     """Return what motions that change no reading are called: those that have a share in them."""
-    shares = np.sum(left**2, axis=1)
+    shares = np.sum(motions**2, axis=1)
     return ", ".join(name for name, share in zip(_MOTIONS, shares, strict=True) if share > 1e-6)
 
 
@@ -421,8 +421,8 @@ def _cables(robot: Robot) -> range:
     return range(1, robot.n_cables + 1)
 
 
-def _without(effect: Effect, still: Collection[tuple[int | None, str]]) -> Effect:
+def _without_held(effect: Effect, still: Collection[tuple[int | None, str]]) -> Effect:
     if effect.id != "anchor_offset" or effect.cable is None:
         return effect
-    kept = tuple(p for p in effect.parameters if (effect.cable, p.name) not in still)
-    return replace(effect, parameters=kept)
+    parameters = tuple(p for p in effect.parameters if (effect.cable, p.name) not in still)
+    return replace(effect, parameters=parameters)

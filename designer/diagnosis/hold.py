@@ -19,13 +19,13 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.accuracy import thirds_of
 from designer.diagnosis.fit import Fit, jacobian, with_places
 from designer.diagnosis.problem import Problem
-from designer.diagnosis.result import MOST_SCATTER, Reason, Withdrawn
+from designer.diagnosis.result import MOST_SCATTER, Reason, RejectedEffect
 from designer.diagnosis.search import Searcher, Step, without
 from designer.diagnosis.statistics import (
     SIGNIFICANCE,
-    beside,
     block_of,
     orthonormal,
+    outside_span,
     rms,
     without_outliers,
 )
@@ -38,7 +38,7 @@ _MOST_CARRIERS = 4
 """Covariates that are tried: weaker ones go with these."""
 
 
-def drifting(outcome: Outcome) -> Withdrawn | None:
+def _drifting(outcome: Outcome) -> RejectedEffect | None:
     r"""Return the found effect that drifts most with a covariate that the residual goes with.
 
     Each effect is allowed to change in proportion to the covariate, all others being fitted anew.
@@ -57,11 +57,11 @@ def drifting(outcome: Outcome) -> Withdrawn | None:
     is_used = problem.used(rows)
     slopes = jacobian(problem, [s.effect for s in model.settings], model.vector)
     spanned = orthonormal(slopes[is_used])
-    remainder = beside(spanned, residual[is_used])
+    remainder = outside_span(spanned, residual[is_used])
     unexplained = model.loss - model.n_data
     predicted = problem.surroundings(model.settings)
     covariates = covariates_of(problem.measured, predicted)
-    worst: Withdrawn | None = None
+    worst: RejectedEffect | None = None
     for setting, columns in with_places(model.settings):
         if setting.effect.key not in keys:
             continue
@@ -69,10 +69,10 @@ def drifting(outcome: Outcome) -> Withdrawn | None:
         rest = [s for s in model.settings if s is not setting]
         change = problem.misfit(rest)[is_used] - unclipped[is_used]
         other_slopes = orthonormal(np.delete(slopes, columns, axis=-1)[is_used])
-        size = np.sqrt(max(np.sum(beside(other_slopes, change) ** 2), model.variance))
+        size = np.sqrt(max(np.sum(outside_span(other_slopes, change) ** 2), model.variance))
         for name, z in _weights(structure, covariates, predicted, rows):
             moved = (slopes[..., columns] * z[..., None])[is_used]
-            further = orthonormal(beside(spanned, moved))
+            further = orthonormal(outside_span(spanned, moved))
             gain = float(np.sum((further.T @ remainder) ** 2))
             # With six covariates for each of up to five effects, the chance of any is below 0.001.
             drift = gain if chi2.sf(gain / model.variance, moved.shape[1]) < 1e-5 else 0.0
@@ -82,7 +82,7 @@ def drifting(outcome: Outcome) -> Withdrawn | None:
             # it explains most of what is left.
             least = 0.05 if drift > 0.5 * unexplained > 0.0 else 0.2
             if variation > max(least, worst.variation if worst else 0.0):
-                worst = Withdrawn(setting.effect.key, name, variation)
+                worst = RejectedEffect(setting.effect.key, name, variation)
     return worst
 
 
@@ -133,7 +133,7 @@ class Outcome:
     steps: tuple[Step, ...]  #: the search, round by round
     fit: Fit  #: joint fit of the effects that hold
     found: tuple[Effect, ...]  #: those, without what was unknown from the start
-    withdrawn: tuple[Withdrawn, ...] = ()  #: what was found and does not hold
+    withdrawn: tuple[RejectedEffect, ...] = ()  #: what was found and does not hold
 
     @cached_property
     def structure(self) -> Structure:
@@ -145,7 +145,7 @@ class Outcome:
         return self.searcher.fit(without(self.found, effect.key), self.fit, thorough=True)
 
     def holding(
-        self, tests: Sequence[Callable[[Outcome], Withdrawn | None]], progress: Pace
+        self, tests: Sequence[Callable[[Outcome], RejectedEffect | None]], progress: Pace
     ) -> Outcome:
         """Withdraw what the first test objects to, fit the rest anew, until all are content.
 
@@ -196,9 +196,11 @@ def search_and_hold(
     last = [t for t in steps[-1].trials if t.effect not in effects_found] if steps else []
     good = [t for t in last if t.earns_its_place]
     wild = [gone for t in good if (gone := implausible(t.fit, [t.effect]))][:1]
-    drift = [Withdrawn(t.effect.key, reason=Reason.READINGS_DRIFT) for t in last if t.is_drift][:1]
+    drift = [
+        RejectedEffect(t.effect.key, reason=Reason.READINGS_DRIFT) for t in last if t.is_drift
+    ][:1]
     outcome = Outcome(searcher, problem, rows, steps, model, effects_found, (*wild, *drift))
-    outcome = outcome.holding((_implausible, _bent), progress)
+    outcome = outcome.holding((_implausible, _overfitted), progress)
     rest = without(candidates, *(withdrawal.effect for withdrawal in outcome.withdrawn))
     return replace(outcome, searcher=replace(searcher, candidates=rest))
 
@@ -228,7 +230,7 @@ def keep_what_helps(
     """
     gains: dict[str, Gain] = {}
 
-    def unseen(outcome: Outcome) -> Withdrawn | None:
+    def unseen(outcome: Outcome) -> RejectedEffect | None:
         gains.clear()
         residual = problem.residual(outcome.fit.settings)[heldout]
         harm = {}
@@ -242,15 +244,15 @@ def keep_what_helps(
         worst = min(harm, key=harm.__getitem__, default="")
         if worst and harm[worst] < _HARM:
             detail = f"their mean square grows by {-harm[worst]:.0%}"
-            return Withdrawn(worst, reason=Reason.WORSE, detail=detail)
+            return RejectedEffect(worst, reason=Reason.WORSE, detail=detail)
         if all(gain.is_clear for gain in gains.values()):
             return None
         least = min(gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std)
         gain = gains[least]
-        return Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
+        return RejectedEffect(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
 
-    def bent_since(outcome: Outcome) -> Withdrawn | None:
-        return _bent(outcome) if len(outcome.withdrawn) > n_withdrawn else None
+    def bent_since(outcome: Outcome) -> RejectedEffect | None:
+        return _overfitted(outcome) if len(outcome.withdrawn) > n_withdrawn else None
 
     n_withdrawn = len(outcome.withdrawn)
     outcome = replace(outcome, problem=problem, rows=np.ones_like(heldout))
@@ -258,11 +260,11 @@ def keep_what_helps(
     return outcome.holding(tests, progress), gains
 
 
-def _implausible(outcome: Outcome) -> Withdrawn | None:
+def _implausible(outcome: Outcome) -> RejectedEffect | None:
     return implausible(outcome.fit, outcome.found)
 
 
-def _bent(outcome: Outcome) -> Withdrawn | None:
+def _overfitted(outcome: Outcome) -> RejectedEffect | None:
     """Return the found effect that is most likely bent to fit what else is left; None for none."""
     structure, model = outcome.structure, outcome.fit
     if not outcome.found or not (structure.events or structure.may_bend):
@@ -270,13 +272,13 @@ def _bent(outcome: Outcome) -> Withdrawn | None:
     losses = {effect.key: outcome.fit_without(effect).loss for effect in outcome.found}
     least = min(losses, key=losses.__getitem__)
     if losses[least] - model.loss < _SMALL * (model.loss - model.n_data):
-        return Withdrawn(least, reason=Reason.SMALL)
-    return drifting(outcome)
+        return RejectedEffect(least, reason=Reason.SMALL)
+    return _drifting(outcome)
 
 
-def _unsteady(outcome: Outcome) -> Withdrawn | None:
+def _unsteady(outcome: Outcome) -> RejectedEffect | None:
     """Return a tilt, if what is left scatters more as the rows go on: a wind does, no base."""
-    withdrawn = [each.effect for each in outcome.withdrawn]
+    withdrawn = [rejected.effect for rejected in outcome.withdrawn]
     force = tuple(
         e for e in without(outcome.searcher.candidates, *withdrawn) if e.id == PLATFORM_FORCE.id
     )
@@ -284,18 +286,18 @@ def _unsteady(outcome: Outcome) -> Withdrawn | None:
     is_unsteady = any(event.place == "scatter" for event in outcome.structure.events)
     if not (is_found and is_unsteady and force):
         return None
-    return Withdrawn("base_tilt", reason=Reason.UNSTEADY, instead=force)
+    return RejectedEffect("base_tilt", reason=Reason.UNSTEADY, instead=force)
 
 
-def _no_step(outcome: Outcome) -> Withdrawn | None:
+def _no_step(outcome: Outcome) -> RejectedEffect | None:
     """Return what begins at a time, if what is left goes with time all the same."""
     steps = [e.key for e in outcome.found if e.starts_from is not None and "time" in e.needs]
     if steps and any(carrier.is_order for carrier in outcome.structure.present):
-        return Withdrawn(steps[0], reason=Reason.NO_STEP)
+        return RejectedEffect(steps[0], reason=Reason.NO_STEP)
     return None
 
 
-def implausible(model: Fit, effects: Sequence[Effect]) -> Withdrawn | None:
+def implausible(model: Fit, effects: Sequence[Effect]) -> RejectedEffect | None:
     """Return the first effect with a value that an engineer would not believe."""
     keys = {effect.key for effect in effects}
     for setting in model.settings:
@@ -304,18 +306,18 @@ def implausible(model: Fit, effects: Sequence[Effect]) -> Withdrawn | None:
             if setting.effect.key in keys and not p.is_plausible(value):
                 figure = f"{p.name} = {value:.4g} {p.unit}".rstrip()
                 detail = f"{figure} ({p.plausible[0]:.4g} to {p.plausible[1]:.4g} would be)"
-                return Withdrawn(setting.effect.key, reason=Reason.IMPLAUSIBLE, detail=detail)
+                return RejectedEffect(setting.effect.key, reason=Reason.IMPLAUSIBLE, detail=detail)
     return None
 
 
-def _faint(outcome: Outcome) -> Withdrawn | None:
+def _faint(outcome: Outcome) -> RejectedEffect | None:
     """Return the first effect that may as well do nothing, by its clustered covariance.
 
     All its values together: those of a moved exit point are each in doubt through the others.
     """
     for effect in outcome.found:
         if outcome.fit.is_faint(effect):
-            return Withdrawn(effect.key, reason=Reason.FAINT)
+            return RejectedEffect(effect.key, reason=Reason.FAINT)
     return None
 
 

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.diagnosis.calibration import Told, told_by
+from designer.diagnosis.calibration import Identifiability, identifiability_of
 from designer.diagnosis.case import case_of
 from designer.diagnosis.fit import jacobian
 from designer.diagnosis.problem import Problem
@@ -185,14 +185,19 @@ def _plan(
         raise InputError.at("--poses", f"is {count}", expected)
     progress("the choice")
     chosen = exchanged(slopes, count)
-    told = told_by(slopes[chosen], count)
+    identifiability = identifiability_of(slopes[chosen], count)
     rng = np.random.default_rng(0)
     draws = [rng.choice(len(places), count, replace=False) for _ in range(_DRAWS)]
-    std_random = np.median([told_by(slopes[draw], count).std for draw in draws], axis=0) * typical
+    std_random = (
+        np.median([identifiability_of(slopes[draw], count).std for draw in draws], axis=0) * typical
+    )
     sizes = sorted({min(max(round(share * count), 1), len(places)) for share in _SIZES})
-    by_size = [told if n == count else told_by(slopes[exchanged(slopes, n)], n) for n in sizes]
+    by_size = [
+        identifiability if n == count else identifiability_of(slopes[exchanged(slopes, n)], n)
+        for n in sizes
+    ]
     route = chosen[_route(places[chosen, :3])]
-    std = told.std * typical
+    std = identifiability.std * typical
     return Plan(
         study,
         problem.noise,
@@ -203,8 +208,8 @@ def _plan(
             Expected(*pair, float(std[k]), float(std_random[k]))
             for k, pair in enumerate(parameters)
         ),
-        condition=told.condition,
-        observability=told.observability,
+        condition=identifiability.condition,
+        observability=identifiability.observability,
         sizes=tuple(sizes),
         curves=tuple(_curves(parameters, by_size, typical)),
     )
@@ -231,17 +236,17 @@ def candidates(
     robot = as_built(machine, declared_settings(study, machine)).robot
     statics = solve_sagging(robot, measured.poses, _that_can_break(cable))
     tension_N = statics.cable_tension_N
-    held = statics.is_solved & (tension_N <= cable.allowable_tension_N).all(axis=-1)
-    if not held.any():
+    is_held = statics.is_solved & (tension_N <= cable.allowable_tension_N).all(axis=-1)
+    if not is_held.any():
         problem = f"the robot holds none of {len(places)} poses with its cable"
         raise InputError([study.source.fault("workspace.region", problem, "poses that it holds")])
-    length_m, tension_N = statics.length_m[held], statics.exit_tension_N[held]
+    length_m, tension_N = statics.length_m[is_held], statics.exit_tension_N[is_held]
     measured = Measured(
-        Poses.at(places[held]),
+        Poses.at(places[is_held]),
         length_m if "length" in noise else np.full_like(length_m, np.nan),
         tension_N if "tension" in noise else np.full_like(length_m, np.nan),
         settled=True,
-        row_numbers=np.arange(1, int(held.sum()) + 1),
+        row_numbers=np.arange(1, int(is_held.sum()) + 1),
     )
     case = case_of(study, measurements, measured)
     for name in measurements.unknown:
@@ -257,7 +262,7 @@ def candidates(
         raise InputError([study.source.fault("measurements.unknown", "is empty", expected)])
     sizes = Noise(noise.get("length", math.inf), noise.get("tension", math.inf), "declared")
     problem_there = Problem(measured, case.predictor(), sizes)
-    return problem_there, list(case.given), statics, places[held]
+    return problem_there, list(case.given), statics, places[is_held]
 
 
 def _that_can_break(cable: Cable) -> Cable:
@@ -288,8 +293,8 @@ def slopes_at(problem: Problem, effects: Sequence[Effect], study: Study) -> Floa
     declared = {s.effect.key: s.values for s in declared_settings(study, problem.predict.machine)}
     values = [declared.get(effect.key, effect.neutral) for effect in effects]
     vector = np.array([
-        known.get(p.name, p.neutral)
-        for effect, known in zip(effects, values, strict=True)
+        values_of_effect.get(p.name, p.neutral)
+        for effect, values_of_effect in zip(effects, values, strict=True)
         for p in effect.parameters
     ])  # fmt: skip
     typical = np.array([p.typical for effect in effects for p in effect.parameters])
@@ -308,20 +313,20 @@ def exchanged(slopes: FloatArray, count: int) -> IntArray:
         before = list(chosen)
         for place, pose in enumerate(before):
             information = information - slopes[pose].T @ slopes[pose]
-            others = chosen[:place] + chosen[place + 1 :]
-            chosen[place] = _best(slopes, information, others)
+            unchanged = chosen[:place] + chosen[place + 1 :]
+            chosen[place] = _best(slopes, information, unchanged)
             information = information + slopes[chosen[place]].T @ slopes[chosen[place]]
         if chosen == before:
             break
     return np.array(chosen)
 
 
-def _best(slopes: FloatArray, information: FloatArray, taken: Sequence[int]) -> int:
+def _best(slopes: FloatArray, information: FloatArray, excluded: Sequence[int]) -> int:
     """Return the pose that multiplies the determinant by most, of those not taken."""
     inverse = np.linalg.inv(information)
-    own = slopes @ inverse @ slopes.transpose(0, 2, 1) + np.eye(slopes.shape[1])
-    gain = np.linalg.slogdet(own)[1]
-    gain[list(taken)] = -np.inf
+    growth = slopes @ inverse @ slopes.transpose(0, 2, 1) + np.eye(slopes.shape[1])
+    gain = np.linalg.slogdet(growth)[1]
+    gain[list(excluded)] = -np.inf
     return int(np.argmax(gain))
 
 
@@ -336,12 +341,14 @@ def _route(position_m: FloatArray) -> IntArray:
 
 
 def _curves(
-    parameters: Sequence[tuple[Effect, Parameter]], by_size: Sequence[Told], typical: FloatArray
+    parameters: Sequence[tuple[Effect, Parameter]],
+    by_size: Sequence[Identifiability],
+    typical: FloatArray,
 ) -> Iterator[DeviationCurve]:
-    std = np.array([told.std for told in by_size]) * typical
+    std = np.array([identifiability.std for identifiability in by_size]) * typical
     kinds = [(effect.id, p.unit) for effect, p in parameters]
     for kind in dict.fromkeys(kinds):
-        alike = [k for k, other in enumerate(kinds) if other == kind]
+        alike = [k for k, kind_of_parameter in enumerate(kinds) if kind_of_parameter == kind]
         yield DeviationCurve(*kind, std[:, alike].max(axis=1))
 
 

@@ -91,12 +91,12 @@ class SlopeCache:
         """
         place = {s.effect.key: _values_of(s) for s in settings}
         slopes: dict[str, FloatArray] = {}
-        for taken in reversed([t for t in self._taken if t.trust == trust]):
-            near = _good_for(place, taken, nearly=nearly) - slopes.keys()
-            slopes |= {key: taken.slopes[key] for key in near}
-            if near:  # those in use are the last to go
-                self._taken.remove(taken)
-                self._taken.append(taken)
+        for cached in reversed([t for t in self._taken if t.trust == trust]):
+            usable = _usable_slopes(place, cached, nearly=nearly) - slopes.keys()
+            slopes |= {key: cached.slopes[key] for key in usable}
+            if usable:  # those in use are the last to go
+                self._taken.remove(cached)
+                self._taken.append(cached)
         fresh = {s.effect.key: compute(s) for s in settings if s.effect.key not in slopes}
         if fresh:
             self._taken = [*self._taken[1 - _MAX_PLACES :], _CachedSlopes(place, trust, fresh)]
@@ -112,22 +112,24 @@ def _values_of(setting: Setting) -> _Values:
     return _Values(values, neutral, np.maximum(typical, 0.1 * np.abs(values - neutral)))
 
 
-def _good_for(place: _Place, taken: _CachedSlopes, *, nearly: bool) -> set[str]:
+def _usable_slopes(place: _Place, cached: _CachedSlopes, *, nearly: bool) -> set[str]:
     """Return the effects whose slopes, taken elsewhere, are good at a place."""
-    moved = {key: _moved(key, place, taken.place) for key in {**place, **taken.place}}
-    own, other = (_OWN_CHANGE, _OTHER_CHANGE) if nearly else (0.0, 0.0)
-    if max(moved.values()) > other:
+    moved = {key: _distance(key, place, cached.place) for key in {**place, **cached.place}}
+    own_limit, other_limit = (_OWN_CHANGE, _OTHER_CHANGE) if nearly else (0.0, 0.0)
+    if max(moved.values()) > other_limit:
         return set()
-    return {key for key in taken.slopes if key in place and moved[key] <= own}
+    return {key for key in cached.slopes if key in place and moved[key] <= own_limit}
 
 
-def _moved(key: str, place: _Place, other: _Place) -> float:
+def _distance(key: str, place: _Place, cached: _Place) -> float:
     """Return how far an effect's values are apart; without the effect it does nothing."""
-    here, there = place.get(key), other.get(key)
-    known = here or there
-    assert known is not None
-    a, b = (known.neutral if values is None else values.values for values in (here, there))
-    return float(np.max(np.abs(a - b) / known.unit))
+    at_place, at_cached = place.get(key), cached.get(key)
+    present = at_place or at_cached
+    assert present is not None
+    a, b = (
+        present.neutral if values is None else values.values for values in (at_place, at_cached)
+    )
+    return float(np.max(np.abs(a - b) / present.unit))
 
 
 # The model of one session.
@@ -290,7 +292,7 @@ class Predictor:
     #: act
     session: int | None = None
     _guesses: dict[Kind, Guess] = field(init=False, default_factory=dict)
-    _known: dict[Kind, tuple[Readings, Readings]] = field(init=False, default_factory=dict)
+    _solutions: dict[Kind, tuple[Readings, Readings]] = field(init=False, default_factory=dict)
     _built: dict[Kind, tuple[Measured, Built]] = field(init=False, default_factory=dict)
     slopes: SlopeCache = field(init=False, default_factory=SlopeCache)
 
@@ -310,17 +312,17 @@ class Predictor:
                 poses = setting.effect.on_poses(poses, setting.values)
         return replace(self.measured, poses=poses)
 
-    def _kept(self, settings: Sequence[Setting]) -> Built:
+    def _built_with(self, settings: Sequence[Setting]) -> Built:
         """Return machine and rows as these effects have them, from the latest where it is there."""
         bodily = (s for s in settings if s.effect.on_machine or s.effect.on_poses)
         key = tuple((s.effect.key, *s.values.values()) for s in bodily)
-        rows, kept = self._built.get(key, (None, None))
-        if kept is None or rows is not self.measured:
-            kept = Built(self.built(settings), self.placed(settings))
+        rows, built = self._built.get(key, (None, None))
+        if built is None or rows is not self.measured:
+            built = Built(self.built(settings), self.placed(settings))
             if len(self._built) >= _MAX_MACHINES:
                 self._built.clear()
-            self._built[key] = self.measured, kept
-        return kept
+            self._built[key] = self.measured, built
+        return built
 
     def _all(self, settings: Sequence[Setting]) -> list[Setting]:
         """Return the effects that show in these rows, in the order in which they act."""
@@ -385,11 +387,11 @@ class Predictor:
         solve: Callable[[Sequence[Setting], Noise], tuple[Readings, Readings]],
     ) -> tuple[Readings, Readings]:
         key = (noise, *((s.effect.key, *s.values.values()) for s in settings))
-        if key not in self._known:
-            if len(self._known) > 64:  # more than the slopes of one fit ask for
-                self._known.clear()
-            self._known[key] = solve(settings, noise)
-        return self._known[key]
+        if key not in self._solutions:
+            if len(self._solutions) > 64:  # more than the slopes of one fit ask for
+                self._solutions.clear()
+            self._solutions[key] = solve(settings, noise)
+        return self._solutions[key]
 
     def distrust(self, settings: Sequence[Setting], noise: Noise) -> tuple[float, float]:
         """Return how much more than noise readings were off with these effects; see `Guess`."""
@@ -397,8 +399,8 @@ class Predictor:
         return guess.distrust if guess else (1.0, 1.0)
 
     def _physical(self, settings: Sequence[Setting], _: Noise) -> tuple[Readings, Readings]:
-        kept = self._kept(settings)
-        readings = readings_of(kept.machine, kept.measured.poses, kept.measured)
+        built = self._built_with(settings)
+        readings = readings_of(built.machine, built.measured.poses, built.measured)
         return readings, readings
 
     def _with_forces(self, settings: Sequence[Setting], noise: Noise) -> tuple[Readings, Readings]:
@@ -419,7 +421,7 @@ class Predictor:
         guess = self._guesses[kind] = self._settled(settings, noise, judges=True)[0]
         if before is not None and before.distrust == guess.distrust:
             return False
-        self._known.clear()
+        self._solutions.clear()
         return True
 
     def trust_as(self, known: Sequence[Setting], effects: Sequence[Effect], noise: Noise) -> None:
@@ -439,26 +441,26 @@ class Predictor:
 
         What they add depends on the internal forces in turn, though little.
         """
-        kept, sensing = self._kept(settings), self._sensing(settings)
-        nothing = Guess(np.zeros_like(kept.measured.readings))
-        guess = self._guesses.get(kind_of(settings, noise), nothing)
+        built, sensing = self._built_with(settings), self._sensing(settings)
+        initial = Guess(np.zeros_like(built.measured.readings))
+        guess = self._guesses.get(kind_of(settings, noise), initial)
         # Of two ways to hold a row, where there are two, the first judgement chooses.
-        near = None if judges else guess.near
-        if near is not None:  # what these values add to it
-            _, displayed, guess = _displayed(kept, sensing, near, guess)
+        start = None if judges else guess.near
+        if start is not None:  # what these values add to it
+            _, displayed, guess = _displayed(built, sensing, start, guess)
         for _ in range(_MAX_ITERATIONS):
-            held = kept.balanced(guess, noise, near)
-            near = None if judges else held
+            balance = built.balanced(guess, noise, start)
+            start = None if judges else balance
             before = guess
-            true, displayed, guess = _displayed(kept, sensing, held, before)
+            true, displayed, guess = _displayed(built, sensing, balance, before)
             if judges:
-                guess = guess.with_distrust(kept.measured, displayed, noise)
+                guess = guess.with_distrust(built.measured, displayed, noise)
             if guess.is_near(before, noise):
                 break
         return guess, true, displayed
 
     def _shown(self, readings: Readings, settings: Sequence[Setting]) -> Readings:
-        return _shown(self._kept(settings), self._sensing(settings), readings)
+        return _shown(self._built_with(settings), self._sensing(settings), readings)
 
     def _sensing(self, settings: Sequence[Setting]) -> list[Setting]:
         """Return the effects that act on readings, in the order in which they do."""
@@ -466,21 +468,21 @@ class Predictor:
 
 
 def _displayed(
-    kept: Built, sensing: Sequence[Setting], held: Statics, guess: Guess
+    built: Built, sensing: Sequence[Setting], balance: Statics, guess: Guess
 ) -> tuple[Readings, Readings, Guess]:
     """Return true and displayed readings of a balance, and the guess that it leads to."""
-    true = true_readings(held)
-    displayed = _shown(kept, sensing, with_stiff_ends(kept.machine, held, true))
+    true = true_readings(balance)
+    displayed = _shown(built, sensing, with_stiff_ends(built.machine, balance, true))
     added = np.nan_to_num(displayed.stacked - true.stacked)
-    return true, displayed, replace(guess, added=added, near=held)
+    return true, displayed, replace(guess, added=added, near=balance)
 
 
-def _shown(kept: Built, sensing: Sequence[Setting], readings: Readings) -> Readings:
+def _shown(built: Built, sensing: Sequence[Setting], readings: Readings) -> Readings:
     for setting in sensing:
         assert setting.effect.on_readings is not None
         # Of a law that takes the machine, as the other effects have it.
-        more = {"machine": kept.machine} if setting.effect.takes_machine else {}
-        readings = setting.effect.on_readings(readings, setting.values, kept.measured, **more)
+        more = {"machine": built.machine} if setting.effect.takes_machine else {}
+        readings = setting.effect.on_readings(readings, setting.values, built.measured, **more)
     return readings
 
 
@@ -563,13 +565,13 @@ def imbalance_of(predict: Predictor, settings: Sequence[Setting]) -> FloatArray 
     if predict.machine.robot.has_enough_cables:
         return None
     placed = predict.placed(settings)
-    left = np.full(placed.n_rows, np.nan)
+    imbalances = np.full(placed.n_rows, np.nan)
     for rows, machine in predict.machines(settings):
-        own = placed if rows.all() else placed.part(rows)
-        force = added_force_N(machine, own)
-        statics = solve_underactuated(machine.robot, own.poses, machine.cables, force)
-        left[rows] = imbalance(statics)
-    return left
+        rows_placed = placed if rows.all() else placed.part(rows)
+        force = added_force_N(machine, rows_placed)
+        statics = solve_underactuated(machine.robot, rows_placed.poses, machine.cables, force)
+        imbalances[rows] = imbalance(statics)
+    return imbalances
 
 
 def channel_names(n_cables: int) -> list[str]:
@@ -610,12 +612,12 @@ class SessionsPredictor(Predictor):
 
     def machines(self, settings: Sequence[Setting]) -> Iterator[tuple[BoolArray, Machine]]:
         """Yield the machine as it was in each session, and its rows (n_rows,)."""
-        for rows, part, own in self._acting(settings):
-            yield rows, part.built(own)
+        for rows, part, acting in self._acting(settings):
+            yield rows, part.built(acting)
 
     def placed(self, settings: Sequence[Setting]) -> Measured:
         """Return the rows in the poses that the platform had, as these effects have it."""
-        placed = [part.placed(own).poses for _, part, own in self._acting(settings)]
+        placed = [part.placed(acting).poses for _, part, acting in self._acting(settings)]
         rotations = [p.rotation for p in placed]
         is_turned = rotations[0].ndim > 2
         positions = np.concatenate([p.position_m for p in placed])
@@ -624,39 +626,39 @@ class SessionsPredictor(Predictor):
 
     def __call__(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
         """Return what the sensors would show with these effects."""
-        return _concatenated([part(own, noise) for _, part, own in self._acting(settings)])
+        return _concatenated([part(acting, noise) for _, part, acting in self._acting(settings)])
 
     def surroundings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
         """Return lengths and tensions that a residual may go with."""
         return _concatenated(
-            [part.surroundings(own, noise) for _, part, own in self._acting(settings)]
+            [part.surroundings(acting, noise) for _, part, acting in self._acting(settings)]
         )
 
     def true_readings(self, settings: Sequence[Setting], noise: Noise) -> Readings:
         """Return what was measured, less what sensors and stiff ends add to it in the model."""
         return _concatenated(
-            [part.true_readings(own, noise) for _, part, own in self._acting(settings)]
+            [part.true_readings(acting, noise) for _, part, acting in self._acting(settings)]
         )
 
     def distrust(self, settings: Sequence[Setting], noise: Noise) -> tuple[float, float]:
         """Return how much more than noise readings were off at most in a session."""
-        of_each = [part.distrust(own, noise) for _, part, own in self._acting(settings)]
+        of_each = [part.distrust(acting, noise) for _, part, acting in self._acting(settings)]
         return max(length for length, _ in of_each), max(tension for _, tension in of_each)
 
     def trust_as(self, known: Sequence[Setting], effects: Sequence[Effect], noise: Noise) -> None:
         """Trust readings of each session as with a known model; see `Predictor`."""
-        for _, part, own in self._acting(known):
+        for _, part, acting_settings in self._acting(known):
             acting = [e for e in effects if e.session in (None, part.session)]
-            part.trust_as(own, acting, noise)
+            part.trust_as(acting_settings, acting, noise)
 
     def trust_anew(self, settings: Sequence[Setting], noise: Noise) -> bool:
         """Judge anew how far readings of each session can be trusted; tell if that changed."""
-        changes = [part.trust_anew(own, noise) for _, part, own in self._acting(settings)]
+        changes = [part.trust_anew(acting, noise) for _, part, acting in self._acting(settings)]
         return any(changes)
 
 
 def _concatenated(readings: Sequence[Readings]) -> Readings:
     return Readings(
-        np.concatenate([each.length_m for each in readings]),
-        np.concatenate([each.tension_N for each in readings]),
+        np.concatenate([part.length_m for part in readings]),
+        np.concatenate([part.tension_N for part in readings]),
     )

@@ -98,7 +98,7 @@ class Reason(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Withdrawn:
+class RejectedEffect:
     """An effect that fits, but does not hold."""
 
     effect: str = field(metadata={"json": "id"})  #: its key
@@ -170,7 +170,7 @@ class Diagnosis:
         Effects that earned their place.
     given : tuple of Setting
         What was unknown from the start, with its values.
-    withdrawn : tuple of Withdrawn
+    withdrawn : tuple of RejectedEffect
         Effects that fitted but do not hold.
     skipped : tuple of (effect, reason)
         Effects that this data cannot show.
@@ -225,7 +225,7 @@ class Diagnosis:
     heldout: BoolArray
     findings: tuple[Finding, ...]
     given: tuple[Setting, ...]
-    withdrawn: tuple[Withdrawn, ...]
+    withdrawn: tuple[RejectedEffect, ...]
     skipped: tuple[tuple[str, str], ...]
     steps: tuple[Step, ...]
     stages: tuple[Stage, ...]
@@ -256,7 +256,7 @@ class Diagnosis:
     @property
     def strange_sessions(self) -> tuple[int, ...]:
         """Sessions that the model does not explain, while it explains others."""
-        over = {each.session: each.over(self.noise) for each in self.sessions}
+        over = {error.session: error.over(self.noise) for error in self.sessions}
         strange = tuple(number for number, ratio in over.items() if ratio > MOST_SCATTER)
         return strange if len(strange) < len(over) else ()
 
@@ -406,7 +406,7 @@ class Diagnosis:
     def has_no_rivals(self, finding: Finding) -> bool:
         """Tell whether all of the list were tried in place of a finding, and none is as good."""
         cut_short = f"rivals of {finding.effect.key}:"
-        return not (finding.rivals or any(what.startswith(cut_short) for what in self.not_tried))
+        return not (finding.rivals or any(part.startswith(cut_short) for part in self.not_tried))
 
     @property
     def is_positive(self) -> bool:
@@ -536,9 +536,9 @@ def _balance(imbalance: FloatArray | None) -> Json | None:
     """Return how far poses are from balance, over the weight, where cables let them sway."""
     if imbalance is None:
         return None
-    held = imbalance[~np.isnan(imbalance)]
+    finite = imbalance[~np.isnan(imbalance)]
     return {
-        "left_median": np.median(held) if held.size else None,
-        "left_largest": held.max() if held.size else None,
-        "rows_not_held": imbalance.size - held.size,
+        "left_median": np.median(finite) if finite.size else None,
+        "left_largest": finite.max() if finite.size else None,
+        "rows_not_held": imbalance.size - finite.size,
     }

@@ -15,12 +15,12 @@ from itertools import pairwise, product
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.drift import beside_drift
+from designer.diagnosis.drift import gain_in_drift
 from designer.diagnosis.fit import (
     HUBER,
     Fit,
     LinearTrial,
-    View,
+    StartingPoint,
     fit,
     huber,
     jacobian,
@@ -28,7 +28,7 @@ from designer.diagnosis.fit import (
     with_places,
 )
 from designer.diagnosis.problem import Problem
-from designer.diagnosis.statistics import SIGNIFICANCE, beside, folds, orthonormal
+from designer.diagnosis.statistics import SIGNIFICANCE, folds, orthonormal, outside_span
 from designer.effects.effect import Effect, Setting
 from designer.progress import Pace
 
@@ -114,12 +114,12 @@ def _best(trials: Sequence[EffectTrial], order: Sequence[Effect]) -> list[Effect
     if best is None:
         return []
     # By the fit that has more to tell: what the best explains lasts in what a worse one leaves.
-    few = best.fit.inflation[best.effect.key]
+    inflation = best.fit.inflation[best.effect.key]
     close = [
         t
         for t in good
         if t.score(variance)
-        >= best.score(variance) - RIVAL_MARGIN * min(few, t.fit.inflation[t.effect.key])
+        >= best.score(variance) - RIVAL_MARGIN * min(inflation, t.fit.inflation[t.effect.key])
     ]
     # Of equal ones, the one that acts first.
     place = {effect.key: k for k, effect in enumerate(order)}
@@ -153,7 +153,7 @@ def _best_variance(trials: Sequence[EffectTrial]) -> float:
 
 def _acting_cables(effect: Effect, model: Fit) -> list[int]:
     """Return the cables, from 1, whose own numbers of an effect do something for sure."""
-    (setting, at), *_ = (own for own in with_places(model.settings) if own[0].effect is effect)
+    (setting, at), *_ = (pair for pair in with_places(model.settings) if pair[0].effect is effect)
     numbers = zip(effect.parameters, model.std[at].tolist(), strict=True)
     return [
         cable
@@ -174,7 +174,7 @@ class Searcher:
     #: told what is being tried; where the time is spent, the search ends
     progress: Pace = field(default_factory=Pace)
     _unseen: dict[tuple[frozenset[str], str], float] = field(default_factory=dict)
-    _views: tuple[View, ...] = ()  # of all candidates, without any other
+    _views: tuple[StartingPoint, ...] = ()  # of all candidates, without any other
 
     def run(self) -> tuple[tuple[Step, ...], Fit, tuple[Effect, ...]]:
         """Add, exchange and prune until nothing changes, or a set of effects comes again.
@@ -239,11 +239,11 @@ class Searcher:
             return effects, present
         # What was found before comes first, in the order in which it was.
         together.sort(key=lambda e: effects.index(e) if e in effects else len(effects))
-        kept = self._pruned(together)
-        model = self.fit(kept, model)
+        pruned = self._pruned(together)
+        model = self.fit(pruned, model)
         is_better = self._penalised(model) < self._penalised(present)
-        if is_better and self._earn_their_places(kept, effects, model):
-            return kept, model
+        if is_better and self._earn_their_places(pruned, effects, model):
+            return pruned, model
         return effects, present
 
     def _earn_their_places(
@@ -284,11 +284,11 @@ class Searcher:
         """Return the few sets of candidates that promise most, beside the present one."""
         is_used = self.problem.used(self.rows)
         off, now = (self.problem.misfit(model.settings)[is_used] for model in (alone, present))
-        known = np.empty((len(off), 0))
+        given_slopes = np.empty((len(off), 0))
         if self.given:
-            known = jacobian(self.problem, self.given, alone.vector, nearly=True)[is_used]
+            given_slopes = jacobian(self.problem, self.given, alone.vector, nearly=True)[is_used]
         weight = HUBER / np.maximum(np.abs(now), HUBER)
-        linear = LinearModel(self._views, off, known, weight)
+        linear = LinearModel(self._views, off, given_slopes, weight)
         return best_sets(linear, _penalty, effects, max(2, len(effects)), _MAX_SETS)
 
     def _extended(
@@ -327,13 +327,15 @@ class Searcher:
         clear = [
             e for e in promised if _chance(promised[e] / _PROMISE_SHARE, e, looks) < SIGNIFICANCE
         ]
-        near = {e for e in clear if promised[e] >= least}
-        first = [e for k, e in enumerate(promised) if k < _MIN_TRIALS or e in near or e in earned]
+        promising = {e for e in clear if promised[e] >= least}
+        shortlist = [
+            e for k, e in enumerate(promised) if k < _MIN_TRIALS or e in promising or e in earned
+        ]
         # What nothing is expected of is only shown: it is not looked for in far valleys.
         hopeful = {*clear, *earned}
-        trials = self._tried(effects, first, present, part, looks, hopeful)
+        trials = self._tried(effects, shortlist, present, part, looks, hopeful)
         trials = self._validated(effects, present, trials, looks)
-        rest = without([*promised], *(e.key for e in first))
+        rest = without([*promised], *(e.key for e in shortlist))
         if not (self.progress.is_over or any(trial.may_be_added for trial in trials)):
             further = [e for e in rest if e in clear]
             if further:
@@ -400,7 +402,7 @@ class Searcher:
             if settled or is_known or trial.chance >= SIGNIFICANCE:  # needs no proof
                 answer.append(trial)
                 continue
-            tested = self._beside_drift(trial, present, looks)
+            tested = self._with_drift_terms(trial, present, looks)
             if tested.chance < SIGNIFICANCE:
                 gain = self._unseen_loss(effects, present)
                 gain -= self._unseen_loss([*effects, trial.effect], trial.fit)
@@ -408,9 +410,9 @@ class Searcher:
             answer.append(tested)
         return answer
 
-    def _beside_drift(self, trial: EffectTrial, present: Fit, looks: int) -> EffectTrial:
+    def _with_drift_terms(self, trial: EffectTrial, present: Fit, looks: int) -> EffectTrial:
         """Return a trial with no more gain than a drift of the readings leaves it."""
-        gain = beside_drift(self.problem, present, trial.fit, trial.effect, self.rows)
+        gain = gain_in_drift(self.problem, present, trial.fit, trial.effect, self.rows)
         if gain >= trial.gain:
             return trial
         chance = _chance(gain, trial.effect, looks)
@@ -440,23 +442,23 @@ class Searcher:
         for rival in self.progress.each(f"rivals of {effect.key}", self._others(effects)):
             if effect.is_part_of(rival):  # which can do all that it does
                 continue
-            beside = without(rest, *rival.parts)  # it stands for all of them
-            is_hopeful = rival.key in good or len(beside) < len(rest)
+            outside_span = without(rest, *rival.parts)  # it stands for all of them
+            is_hopeful = rival.key in good or len(outside_span) < len(rest)
             if not is_hopeful and self._in_reach(rest, rival, lost).gain < least:
                 continue
             trials = [t.fit for step in steps for t in step.trials if t.effect.key == rival.key]
-            with_rest = {e.key for e in (*self.given, *beside, rival)}
+            with_rest = {e.key for e in (*self.given, *outside_span, rival)}
             fits = [m for m in trials if {s.effect.key for s in m.settings} == with_rest]
             if not fits:
                 last = dict.fromkeys([*trials[:1], *trials[-1:]])
-                fits = [self.fit([*beside, rival], present, anew=True)]
-                fits += [self.fit([*beside, rival], start) for start in last]
+                fits = [self.fit([*outside_span, rival], present, anew=True)]
+                fits += [self.fit([*outside_span, rival], start) for start in last]
             swapped = min(fits, key=lambda model: model.loss)
             if not swapped.is_plausible(rival):
                 continue
             suits = self._gap(swapped, present) / scale < RIVAL_MARGIN
             if not suits and rival.key in good:
-                gap = self._unseen_loss([*beside, rival], swapped)
+                gap = self._unseen_loss([*outside_span, rival], swapped)
                 gap -= self._unseen_loss(effects, present)
                 suits = gap / scale < RIVAL_MARGIN
             if suits:
@@ -480,14 +482,14 @@ class Searcher:
         acting = _acting_cables(effect, present)
         if not 2 <= len(acting) <= min(_MAX_TOGETHER, len(effect.parameters) - 1):
             return []
-        others = [
+        candidates = [
             e
             for e in self._others([s.effect for s in present.settings])
             if e.cable in acting and e.session == effect.session
             if not any(effect.id in p.part_of for p in e.parameters)  # which has the same number
         ]
-        kinds = dict.fromkeys(e.id for e in others)
-        groups = (tuple(e for e in others if e.id == kind) for kind in kinds)
+        kinds = dict.fromkeys(e.id for e in candidates)
+        groups = (tuple(e for e in candidates if e.id == kind) for kind in kinds)
         return [group for group in groups if len(group) == len(acting)]
 
     def _gap(self, swapped: Fit, present: Fit) -> float:
@@ -641,7 +643,7 @@ class LinearModel:
 
     Parameters
     ----------
-    views : sequence of View
+    views : sequence of StartingPoint
         All effects at all starts, over the same n readings.
     residual : array (n,)
         Without any of them.
@@ -652,7 +654,11 @@ class LinearModel:
     """
 
     def __init__(
-        self, views: Sequence[View], residual: FloatArray, known: FloatArray, weight: FloatArray
+        self,
+        views: Sequence[StartingPoint],
+        residual: FloatArray,
+        known: FloatArray,
+        weight: FloatArray,
     ) -> None:
         self.views = views
         root = np.sqrt(weight)[:, None]
@@ -660,7 +666,7 @@ class LinearModel:
         slopes = [view.slopes / size for view, size in zip(views, sizes, strict=True)]
         shifts = [residual, *(view.residual - residual for view in views)]
         columns = root * np.column_stack([*shifts, *slopes])
-        columns = beside(orthonormal(root * known), columns)
+        columns = outside_span(orthonormal(root * known), columns)
         self._products = columns.T @ columns
         ends = len(shifts) + np.cumsum([0, *map(len, sizes)])
         self._places = [np.arange(first, end) for first, end in pairwise(ends)]
@@ -692,7 +698,7 @@ def best_sets(
     model: LinearModel,
     penalty: Callable[[Effect], float],
     present: Collection[Effect],
-    most: int,
+    max_size: int,
     count: int,
 ) -> list[tuple[Setting, ...]]:
     """Return the sets of effects of which a linear step promises most.
@@ -714,10 +720,10 @@ def best_sets(
         Sets to return, at most.
     """
     effects = [view.setting.effect for view in model.views]
-    own = frozenset(effect.key for effect in present)
+    present_keys = frozenset(effect.key for effect in present)
     best: dict[frozenset[str], tuple[float, tuple[int, ...]]] = {}
     starts: list[tuple[int, ...]] = [()]
-    for size in range(1, most + 1):
+    for size in range(1, max_size + 1):
         reached: dict[tuple[int, ...], float] = {}
         for members, k in product(starts, range(len(effects))):
             keys = frozenset(effects[m].key for m in members)
@@ -729,9 +735,10 @@ def best_sets(
             name = keys | {effects[k].key}
             best[name] = min((score, more), best.get(name, (np.inf, ())))
         starts = sorted(reached, key=reached.__getitem__)[: None if size == 1 else _BEAM_WIDTH]
-    others = [
+    alternatives = [
         promise
         for name, promise in best.items()
-        if promise[0] < model.nothing and not (own <= name and len(name) <= len(own) + 1)
+        if promise[0] < model.nothing
+        and not (present_keys <= name and len(name) <= len(present_keys) + 1)
     ]
-    return [model.settings(members) for _, members in sorted(others)[:count]]
+    return [model.settings(members) for _, members in sorted(alternatives)[:count]]

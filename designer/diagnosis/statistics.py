@@ -64,7 +64,7 @@ def _median(residual: FloatArray) -> FloatArray:
     return np.where(empty, 0.0, np.nanmedian(np.where(empty, 0.0, residual), axis=0))
 
 
-def beside(basis: FloatArray, columns: FloatArray) -> FloatArray:
+def outside_span(basis: FloatArray, columns: FloatArray) -> FloatArray:
     """Return what columns hold beside the span of an orthonormal basis."""
     return np.asarray(columns - basis @ (basis.T @ columns))
 

@@ -21,9 +21,9 @@ from designer.diagnosis.statistics import (
     MAD_TO_STD,
     SIGNIFICANCE,
     Lasting,
-    beside,
     is_outlier,
     lasting,
+    outside_span,
     rms,
     spread,
     without_outliers,
@@ -179,7 +179,7 @@ def find_structure(
     bases = np.stack([_basis(column) for column in covariates.values()])
     observed = _largest_share(bases, channels)
     # What a covariate explains does not last of itself.
-    lasts = lasting(beside(bases[int(np.argmax(observed))], channels))
+    lasts = lasting(outside_span(bases[int(np.argmax(observed))], channels))
     rng = np.random.default_rng(0)
     chances = chances_of(
         observed, [_largest_share(bases, draw).max() for draw in draws(channels, lasts, rng)]
@@ -382,7 +382,7 @@ _SPREADS = 1.5
 """Scatter of the last third of the rows over that of the first, or the other way."""
 
 
-def with_given_up(
+def with_gross_errors(
     structure: Structure, residual: FloatArray, unfitted: FloatArray, rows: IntArray
 ) -> Structure:
     """Return a structure with what a fit gives up that counts outliers little.
@@ -424,10 +424,10 @@ def with_given_up(
     if n_outliers > max(2, _ACCIDENTS * n_readings):
         by = f"{np.abs(residual[outliers]).max():.0f} times the noise"
         cable = np.argmax(outliers.reshape(len(outliers), 2, -1).sum(axis=(0, 1))) + 1
-        where = f"cable {cable} above all"
+        place = f"cable {cable} above all"
         if wrong.any():
-            where = f"rows with wrong poses: {', '.join(in_runs(rows[wrong]))}"
-        text = f"{n_outliers} of {n_readings} readings that stand off, by up to {by}, of {where}"
+            place = f"rows with wrong poses: {', '.join(in_runs(rows[wrong]))}"
+        text = f"{n_outliers} of {n_readings} readings that stand off, by up to {by}, of {place}"
         share = float(n_outliers / n_readings)
         events.append(Event(text, share, 0.0, "pose" if wrong.any() else ""))
     if is_gross.any() and np.nansum(residual**2) > np.nansum(unfitted**2):
@@ -776,15 +776,20 @@ def find_mirrored(problem: Problem, settings: Sequence[Setting], rows: BoolArray
     as_it_is = _mean_square(problem, settings, rows)
     if not measured.has_poses or not as_it_is > _MIRROR_NOISE**2:
         return None
-    left: dict[str, float] = {}
+    mean_squares: dict[str, float] = {}
     for text, view in left_handed(problem.predict.machine.robot, measured):
         mirrored = replace(problem, measured=view, predict=problem.predict.at(view))
-        left[text] = min(_mean_square(mirrored, settings, rows), left.get(text, np.inf))
-    best = min(left, key=left.__getitem__)
-    if left[best] > _MIRROR_SHARE * as_it_is:
+        mean_squares[text] = min(
+            _mean_square(mirrored, settings, rows), mean_squares.get(text, np.inf)
+        )
+    best = min(mean_squares, key=mean_squares.__getitem__)
+    if mean_squares[best] > _MIRROR_SHARE * as_it_is:
         return None
     return Event(
-        f"a mirrored frame of the poses: {best}", 1.0 - left[best] / as_it_is, 0.0, "mistake"
+        f"a mirrored frame of the poses: {best}",
+        1.0 - mean_squares[best] / as_it_is,
+        0.0,
+        "mistake",
     )
 
 

@@ -241,7 +241,9 @@ class Effect:
 
     def parameters_for(self, n_cables: int) -> tuple[Parameter, ...]:
         """Return the parameters on a robot with so many cables."""
-        return tuple(own for parameter in self.parameters for own in parameter.of_cables(n_cables))
+        return tuple(
+            numbered for parameter in self.parameters for numbered in parameter.of_cables(n_cables)
+        )
 
     def is_part_of(self, effect: Effect) -> bool:
         """Tell whether another effect has all of its numbers."""
@@ -249,8 +251,8 @@ class Effect:
 
     def beside(self, ids: Collection[str]) -> Effect:
         """Return it without the numbers that effects of these ids have as well."""
-        own = tuple(p for p in self.parameters if not set(p.part_of) & set(ids))
-        return replace(self, parameters=own)
+        unshared = tuple(p for p in self.parameters if not set(p.part_of) & set(ids))
+        return replace(self, parameters=unshared)
 
     def on(self, machine: Machine) -> list[Effect]:
         """Return what a machine may have of it: the effect, one for each cable, or none."""

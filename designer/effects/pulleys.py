@@ -47,8 +47,12 @@ def rebalancing_N(
         Of where straight cables leave their pulleys, upright frame [m].
     """
     leaving_m = straight_run(robot, poses).exit_points_m
-    ways = (cable_geometry(robot, poses, points) for points in (leaving_m, leaving_m + moves_m))
-    before, after = (density_matrix(robot, way) / way.chord_m[..., None, :] for way in ways)
+    geometries = (
+        cable_geometry(robot, poses, points) for points in (leaving_m, leaving_m + moves_m)
+    )
+    before, after = (
+        density_matrix(robot, geometry) / geometry.chord_m[..., None, :] for geometry in geometries
+    )
     lost = (after - before) @ np.nan_to_num(tension_N)[..., None]
     gram = np.nan_to_num(before @ np.swapaxes(before, -1, -2))
     ridge = _RIDGE * np.trace(gram, axis1=1, axis2=2)[:, None, None] * np.eye(gram.shape[-1])
@@ -89,13 +93,13 @@ def _enlarge_pulley(
     """Add what a straight cable is longer by over the larger pulley, and turn its pull."""
     robot = replace(machine.robot, cable_load_direction=None)
     level = cable_geometry(robot, measured.poses)
-    way = level.horizontal_distance_m, level.drop_m
+    run = level.horizontal_distance_m, level.drop_m
     radii = np.tile(robot.pulley_radius_m, (2, robot.n_cables))
     radii[1, cable - 1] += values["radius_m"]
-    lengths = [pulley.straight_length_m(*way, radius) for radius in radii]
+    lengths = [pulley.straight_length_m(*run, radius) for radius in radii]
     start = np.zeros((*level.drop_m.shape, 3))
     points = [
-        pulley.tangent_point_m(start, level.outward, pulley.straight_slope_rad(*way, r), r)
+        pulley.tangent_point_m(start, level.outward, pulley.straight_slope_rad(*run, r), r)
         for r in radii
     ]
     moves = points[1] - points[0]
@@ -134,10 +138,10 @@ def _incline_pulley(
     tilt = Rotation.from_rotvec([values.get("rx_rad", 0.0), values.get("ry_rad", 0.0), 0.0])
     radius_m = machine.robot.pulley_radius_m
     tilted_m, leaves = _over_pulley(tilt.inv().apply(ends_m), radius_m)
-    upright_m, left = _over_pulley(ends_m, radius_m)
+    upright_m, upright_leaves = _over_pulley(ends_m, radius_m)
     length, moves = np.array(readings.length_m), np.zeros((*readings.length_m.shape, 3))
     length[:, cable - 1] += tilted_m - upright_m
-    moves[:, cable - 1] = tilt.apply(leaves) - left
+    moves[:, cable - 1] = tilt.apply(leaves) - upright_leaves
     more_N = rebalancing_N(machine.robot, measured.poses, readings.tension_N, moves)
     return Readings(length, readings.tension_N + more_N)
 

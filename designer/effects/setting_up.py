@@ -99,10 +99,12 @@ def _bent_by(
     points = np.repeat(measured.poses.position_m, machine.robot.n_cables, axis=0)
     lift = np.column_stack([np.sum(points**2, axis=1), points, np.ones(len(points))])
     off = np.hsplit(residual, 2)[0].ravel()
-    known = np.isfinite(off)
-    if known.sum() < 2 * lift.shape[1]:
+    is_known = np.isfinite(off)
+    if is_known.sum() < 2 * lift.shape[1]:
         return ()
-    gain, *along, _ = np.linalg.lstsq(slope[known, None] * lift[known], off[known])[0].tolist()
+    gain, *along, _ = np.linalg.lstsq(slope[is_known, None] * lift[is_known], off[is_known])[
+        0
+    ].tolist()
     tracker = {
         f"{axis}_m": -0.5 * x / (gain or 1e-12) for axis, x in zip(_AXES, along, strict=True)
     }

@@ -268,8 +268,8 @@ def joined(parts: Sequence[Assigned], *, settled: bool) -> Assigned:
     motion, the straight line between the samples before and after.
     """
     first = next((part for part in parts if not part.ours.keys().isdisjoint(POSITION)), parts[0])
-    others = [part for part in parts if part is not first]
-    if not others:
+    further = [part for part in parts if part is not first]
+    if not further:
         return first
     for part in parts:
         time = part.ours.get(TIME_NAME)
@@ -280,13 +280,13 @@ def joined(parts: Sequence[Assigned], *, settled: bool) -> Assigned:
         else:
             every_row = np.ones(part.table.n_rows, dtype=np.bool_)
             first.faults.extend(time_faults(part.table, time, every_row, settled=True))
-    if first.faults or any(part.faults or part.table.faults for part in others):
+    if first.faults or any(part.faults or part.table.faults for part in further):
         first.faults.extend(
-            fault for part in others for fault in (*part.table.faults, *part.faults)
+            fault for part in further for fault in (*part.table.faults, *part.faults)
         )
-        first.awaited.update(name for part in others for name in (*part.ours, *part.awaited))
+        first.awaited.update(name for part in further for name in (*part.ours, *part.awaited))
         return first
-    for part in others:
+    for part in further:
         _take(first, part, settled=settled)
     digests = "".join(part.table.sha256 for part in parts)
     sha256 = hashlib.sha256(digests.encode()).hexdigest()
@@ -326,18 +326,20 @@ def _take(first: Assigned, part: Assigned, *, settled: bool) -> None:
 
 
 def _sampled_at(
-    time: FloatArray, own: FloatArray, values: FloatArray, *, settled: bool
+    time: FloatArray, file_time: FloatArray, values: FloatArray, *, settled: bool
 ) -> FloatArray:
     """Return values, which a file has at its own times, at other times; NaN where none is near."""
-    is_there = np.isfinite(own) & ~np.isnan(values)
-    own, values = own[is_there], values[is_there]
-    if len(own) < 2:
+    is_there = np.isfinite(file_time) & ~np.isnan(values)
+    file_time, values = file_time[is_there], values[is_there]
+    if len(file_time) < 2:
         return np.full(len(time), np.nan)
-    step = float(np.median(np.diff(own)))
-    after = np.clip(np.searchsorted(own, time), 1, len(own) - 1)
-    nearest = after - (time - own[after - 1] < own[after] - time)
-    distance = np.abs(own[nearest] - time)
+    step = float(np.median(np.diff(file_time)))
+    after = np.clip(np.searchsorted(file_time, time), 1, len(file_time) - 1)
+    nearest = after - (time - file_time[after - 1] < file_time[after] - time)
+    distance = np.abs(file_time[nearest] - time)
     if settled:
         return np.where(distance <= _REACH * step, values[nearest], np.nan)
-    between = np.interp(time, own, values, left=np.nan, right=np.nan)
-    return np.where((np.diff(own)[after - 1] <= _GAP * step) | (distance == 0.0), between, np.nan)
+    between = np.interp(time, file_time, values, left=np.nan, right=np.nan)
+    return np.where(
+        (np.diff(file_time)[after - 1] <= _GAP * step) | (distance == 0.0), between, np.nan
+    )

@@ -173,9 +173,9 @@ def _wrong_cable(robot: Robot, measured: Measured, table: LogTable) -> list[Faul
         return faults
     read = np.isfinite(measured.length_m).any(axis=0)
     for text, view in left_handed(robot, measured):
-        own = np.diag(_alike(robot, view))[read]
-        better = len(faults) > 2 or np.mean(1.0 - own) < 0.5 * np.mean(1.0 - likest[read])
-        if own.min() > _ALIKE and better:
+        agreement = np.diag(_alike(robot, view))[read]
+        better = len(faults) > 2 or np.mean(1.0 - agreement) < 0.5 * np.mean(1.0 - likest[read])
+        if agreement.min() > _ALIKE and better:
             problem = f"suit the lengths with {text}: the frame of the poses is mirrored"
             expected = f"a right-handed frame, as by 'scale: -1' or other names in {_MAP}"
             return [Fault(table.name, 1, ", ".join(POSITION), problem, expected)]
@@ -186,7 +186,10 @@ def _alike(robot: Robot, measured: Measured) -> FloatArray:
     """Return how each length goes with the distance to each exit point (n_cables, n_cables)."""
     chord_m = cable_geometry(robot, measured.poses).chord_m
     return np.array(
-        [[_correlation(own, other) for other in chord_m.T] for own in measured.length_m.T]
+        [
+            [_correlation(length_m, distance_m) for distance_m in chord_m.T]
+            for length_m in measured.length_m.T
+        ]
     )
 
 

@@ -417,17 +417,17 @@ def _checked(kind: _Format, rows: Rows, name: str) -> Rows:
                 _require_size(n_rows, n_cells)
                 yield row
         except Exception as error:  # whatever a damaged file makes of its reader
-            what = kind.called.partition(" ")[2]
-            refuse(name, None, f"this is no {what} that can be read: {one_line(error)}")
+            kind_of_file = kind.called.partition(" ")[2]
+            refuse(name, None, f"this is no {kind_of_file} that can be read: {one_line(error)}")
 
 
 def _require_size(
     n_rows: int, n_cells: int, n_bytes: int = 0, n_packed: int = LARGEST_FILE_BYTES
 ) -> None:
     """Refuse what fills the memory, by what a file says of itself or by what came of it."""
-    most = min(LARGEST_FILE_BYTES, max(1_000_000, _DENSEST * n_packed))
-    if n_rows > _MOST_ROWS or n_cells > _MOST_CELLS or max(n_bytes, n_cells) > most:
-        limits = f"{_MOST_ROWS:,} rows, {_MOST_CELLS:,} cells or {most:,} bytes"
+    max_bytes = min(LARGEST_FILE_BYTES, max(1_000_000, _DENSEST * n_packed))
+    if n_rows > _MOST_ROWS or n_cells > _MOST_CELLS or max(n_bytes, n_cells) > max_bytes:
+        limits = f"{_MOST_ROWS:,} rows, {_MOST_CELLS:,} cells or {max_bytes:,} bytes"
         raise ValueError(f"it unpacks to more than {limits}")
 
 

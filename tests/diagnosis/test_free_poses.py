@@ -17,7 +17,7 @@ from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.fit import fit
-from designer.diagnosis.free_poses import TAKEN_UP, FreePredictor
+from designer.diagnosis.free_poses import ABSORBED, FreePredictor
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Diagnosis
 from designer.errors import InputError
@@ -120,7 +120,7 @@ def test_what_poses_take_up_is_named_and_never_found(tmp_path) -> None:
     assert [finding.effect.id for finding in known.findings] == ["thermal_expansion"]
     found = diagnose(case_in(written(dataset, tmp_path / "free")))
     assert found.findings == ()
-    assert dict(found.skipped)["thermal_expansion"].startswith(TAKEN_UP)
+    assert dict(found.skipped)["thermal_expansion"].startswith(ABSORBED)
     (told,) = (s for s in diagnosis_page(found).sureness if s.title == "Poses estimated")
     assert "thermal_expansion" in told.text
 

@@ -11,7 +11,7 @@ from twins.logs import write_printer
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.result import DiagnosisVerdict
-from designer.diagnosis.structure import Event, Structure, with_given_up, wrong_poses
+from designer.diagnosis.structure import Event, Structure, with_gross_errors, wrong_poses
 from designer.effects.effect import frame_size_m
 from designer.io.config import read_study
 from designer.measured.read import read_measured
@@ -22,7 +22,7 @@ NOTHING = Structure((), 1.0)
 def texts(residual: np.ndarray, unfitted: np.ndarray | None = None) -> list[str]:
     rows = np.arange(1, len(residual) + 1)
     before = 10.0 * residual if unfitted is None else unfitted
-    return [e.text for e in with_given_up(NOTHING, residual, before, rows).events]
+    return [e.text for e in with_gross_errors(NOTHING, residual, before, rows).events]
 
 
 def noise(rows: int = 40) -> np.ndarray:
@@ -70,7 +70,7 @@ def test_plugs_that_are_exchanged_are_told_alone() -> None:
     exchanged = Structure((), 1.0, events=(Event("length 1 and …", 1.0, 0.0, "mistake"),))
     residual = noise()
     residual[:, 1] = 500.0
-    structure = with_given_up(exchanged, residual, residual, np.arange(1, 41))
+    structure = with_gross_errors(exchanged, residual, residual, np.arange(1, 41))
     assert structure is exchanged
 
 

@@ -7,16 +7,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from designer.diagnosis.fit import View
+from designer.diagnosis.fit import StartingPoint
 from designer.diagnosis.search import LinearModel, best_sets
 from designer.effects.effect import Setting
 
 
-def view(key: str, residual, slopes) -> View:
+def view(key: str, residual, slopes) -> StartingPoint:
     names = [f"p{k}" for k in range(slopes.shape[1])]
     parameters = tuple(SimpleNamespace(name=name, bounds=(-1e6, 1e6)) for name in names)
     effect = SimpleNamespace(key=key, parameters=parameters)
-    return View(Setting(effect, dict.fromkeys(names, 0.5)), residual, slopes)
+    return StartingPoint(Setting(effect, dict.fromkeys(names, 0.5)), residual, slopes)
 
 
 def test_what_a_set_leaves_is_that_of_weighted_least_squares() -> None:

@@ -14,7 +14,7 @@ from itertools import groupby
 import numpy as np
 
 from designer.diagnosis.accuracy import Interval
-from designer.diagnosis.free_poses import TAKEN_UP
+from designer.diagnosis.free_poses import ABSORBED
 from designer.diagnosis.result import MOST_SCATTER, Diagnosis, Finding
 from designer.diagnosis.search import EffectTrial
 from designer.diagnosis.statistics import SIGNIFICANCE
@@ -69,7 +69,7 @@ def first_page(diagnosis: Diagnosis) -> Context:
     scatter = max(diagnosis.scatter.values(), default=0.0)
     return {
         **verdict(diagnosis),
-        "hidden": [key for key, why in diagnosis.skipped if why.startswith(TAKEN_UP)],
+        "hidden": [key for key, why in diagnosis.skipped if why.startswith(ABSORBED)],
         "significances": [_significance(diagnosis, group) for group in grouped(findings)],
         "without_rivals": grouped(alone),
         "scatter": scatter if scatter > MOST_SCATTER else None,
@@ -125,23 +125,23 @@ def errors(diagnosis: Diagnosis) -> Context:
         unsolved = max(stage.n_rows - stage.n_solved for stage in (before, after))
     n_cables = diagnosis.machine.robot.n_cables
     prefix = "Cable " if n_cables < 5 else ""
-    shown = [quantity for quantity, *_ in quantities(diagnosis)]
+    measured = [quantity for quantity, *_ in quantities(diagnosis)]
     files = diagnosis.study.measurements.sessions if diagnosis.study.measurements else ()
     return {
         "session_heads": [
             "Session",
             "File",
             ("Rows", ""),
-            *((f"{q.name.capitalize()} {when} [{q.unit}]", "") for q in shown for when in _WHEN),
+            *((f"{q.name.capitalize()} {when} [{q.unit}]", "") for q in measured for when in _WHEN),
         ],
         "sessions": [
             [
-                str(each.session),
-                files[each.session - 1].file_names if files else "",
-                str(each.n_rows),
-                *(q.shown(error) for q in shown for error in getattr(each, q.field)),
+                str(error_of_session.session),
+                files[error_of_session.session - 1].file_names if files else "",
+                str(error_of_session.n_rows),
+                *(q.shown(error) for q in measured for error in getattr(error_of_session, q.field)),
             ]
-            for each in diagnosis.sessions
+            for error_of_session in diagnosis.sessions
         ],
         "foretold": foretold,
         "unsolved": unsolved,
@@ -230,9 +230,9 @@ def _effects_text(diagnosis: Diagnosis) -> str:
 
 def data(diagnosis: Diagnosis) -> Context:
     """What was measured, what stands off, and what these data cannot show."""
-    left, balance = diagnosis.imbalance, None
-    if left is not None and not np.isnan(left).all():
-        balance = float(np.nanmedian(left)), float(np.nanmax(left))
+    imbalance, balance = diagnosis.imbalance, None
+    if imbalance is not None and not np.isnan(imbalance).all():
+        balance = float(np.nanmedian(imbalance)), float(np.nanmax(imbalance))
     return {
         "n_heldout": int(diagnosis.heldout.sum()),
         "imbalance": balance,
