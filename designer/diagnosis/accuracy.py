@@ -39,16 +39,14 @@ class Interval:
         return self.low, self.high
 
 
-def _heldout(interval: Interval) -> dict[str, object]:
-    return {"heldout_rms": interval.value, "heldout_interval": interval.interval}
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Error:
     """Error of one kind of reading, in SI units."""
 
     rms: float  #: over the rows that were fitted
-    heldout: Interval = field(metadata={"json": _heldout})  #: over the rows that no fit has seen
+    heldout: Interval = field(
+        metadata={"json": lambda i: {"heldout_rms": i.value, "heldout_interval": i.interval}}
+    )  #: over the rows that no fit has seen
     #: (n_cables,): the same, cable by cable
     heldout_of_cable: FloatArray = field(metadata={"json": "heldout_rms_of_cable"})
 
@@ -135,7 +133,11 @@ def errors_of_sessions(
     session = problem.measured.session
     if session is None:
         return ()
-    is_sound = ~np.isnan(_sound_in_each(problem.residual(last), session))
+    residual = problem.residual(last)
+    is_sound = np.zeros(residual.shape, dtype=np.bool_)
+    for number in np.unique(session):  # a whole session is no outlier, however far it is off
+        rows = session == number
+        is_sound[rows] = ~np.isnan(without_outliers(residual[rows]))
     before, after = (
         np.where(is_sound, problem.residual(settings), np.nan) * problem.sigma
         for settings in (first, last)
@@ -148,15 +150,6 @@ def errors_of_sessions(
         count = int((session == number).sum())
         answer.append(SessionError(number, count, int(unseen.sum()), lengths, tensions))
     return tuple(answer)
-
-
-def _sound_in_each(residual: FloatArray, session: IntArray) -> FloatArray:
-    """Blank the outliers of each session; a whole session is none, however far it is off."""
-    sound = np.empty_like(residual)
-    for number in np.unique(session):
-        rows = session == number
-        sound[rows] = without_outliers(residual[rows])
-    return sound
 
 
 def outliers_of(residual: FloatArray, row_numbers: IntArray) -> tuple[Outlier, ...]:

@@ -210,22 +210,18 @@ def _too_few(effect: Effect, measured: Measured) -> str:
 
 
 def _recorded(study: Study, measured: Measured) -> frozenset[str]:
+    chord_m = cable_geometry(study.robot, measured.poses).chord_m
+    signs = np.sign(np.diff(chord_m, axis=0))
+    n_reversals = np.sum(signs[1:] * signs[:-1] < 0.0, axis=0)
     recorded = {
         "motion": not measured.settled,
         "rotation": not study.robot.is_point_mass,
         "pose": measured.has_poses,
         "length": not np.isnan(measured.length_m).all(),
         "tension": not np.isnan(measured.tension_N).all(),
-        "reversals": _has_reversals(study, measured),
+        "reversals": bool((n_reversals >= LEAST_ROWS).any()),
     }
     return measured.columns | {name for name, is_there in recorded.items() if is_there}
-
-
-def _has_reversals(study: Study, measured: Measured) -> bool:
-    """Tell whether some cable turns round a few times at least, by its chord."""
-    chord_m = cable_geometry(study.robot, measured.poses).chord_m
-    signs = np.sign(np.diff(chord_m, axis=0))
-    return bool((np.sum(signs[1:] * signs[:-1] < 0.0, axis=0) >= LEAST_ROWS).any())
 
 
 def first_noise(

@@ -101,7 +101,9 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     # Whatever is decided on the way is decided without them: noise, effects, what is withdrawn.
     seen = replace(case, measured=measured.without_readings(heldout))
     if not measured.has_poses:
-        hidden = _absorbed_by_poses(seen, ~heldout)
+        noise = first_noise(seen.measurements, seen.measured, seen.predictor(), ~heldout)
+        unfitted = Problem(seen.measured, seen.predictor(), noise)
+        hidden = dict(absorbed_by_poses(unfitted, (*seen.given, *seen.candidates), (), ~heldout))
         case, seen = _without(case, hidden), _without(seen, hidden)
     outcome = _with_settled_noise(seen, ~heldout, progress)
     problem = Problem(measured, predict, outcome.problem.noise)
@@ -109,13 +111,6 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     # What is told of the model shall not depend on the path that the search took to it.
     problem = replace(problem, predict=predict.at(measured))
     return _diagnosis_of(case, outcome, problem, gains, heldout, progress)
-
-
-def _absorbed_by_poses(seen: Case, rows: BoolArray) -> dict[str, str]:
-    """Return the effects that estimated poses take up, each with the reason."""
-    noise = first_noise(seen.measurements, seen.measured, seen.predictor(), rows)
-    unfitted = Problem(seen.measured, seen.predictor(), noise)
-    return dict(absorbed_by_poses(unfitted, (*seen.given, *seen.candidates), (), rows))
 
 
 def _diagnosis_of(
@@ -135,7 +130,10 @@ def _diagnosis_of(
         measured = replace(measured, poses=problem.predict.poses(last, problem.noise))
     compared = heldout & with_sound_lengths(problem, last)
     covariates = covariates_of(measured, problem.surroundings(last))
-    rivals = {e.key: _rivals(outcome, e) for e in outcome.found}
+    rivals = {}  # of each finding, by what they are called
+    for effect in outcome.found:
+        groups = outcome.searcher.rivals(outcome.found, effect, outcome.fit, outcome.steps)
+        rivals[effect.key] = {" and ".join(e.key for e in group): group for group in groups}
     shared: dict[str, tuple[Effect, ...]] = {}
     is_several = len(outcome.found) > 2 and case.measured.has_poses
     if is_several and is_one_smooth_error(before, after, measured.poses.position_m, heldout):
@@ -229,12 +227,6 @@ def _with_one_force(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
     return tuple(
         replace(f, rivals=tuple(dict.fromkeys([*f.rivals, PLATFORM_FORCE.id]))) for f in findings
     )
-
-
-def _rivals(outcome: Outcome, effect: Effect) -> dict[str, tuple[Effect, ...]]:
-    """Return what may stand in place of a finding, by what it is called."""
-    rivals = outcome.searcher.rivals(outcome.found, effect, outcome.fit, outcome.steps)
-    return {" and ".join(e.key for e in together): together for together in rivals}
 
 
 def _finding(

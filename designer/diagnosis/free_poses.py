@@ -331,9 +331,11 @@ def with_frame_held(
     still = {(cable, axis) for cable in unknown for axis in across if robot.is_planar} | set(held)
     effects = [_without_held(effect, still) for effect in given]
     names = [f"{axis[0]} of exit point {cable}" for cable, axis in held]
+    shares = np.sum(motions**2, axis=1)
+    unread = [name for name, share in zip(_MOTIONS, shares, strict=True) if share > 1e-6]
     note = (
         f"the frame is held by {', '.join(names)}, which stay as drawn: nothing read tells "
-        f"{_motion_names(motions)}"
+        f"{', '.join(unread)}"
     )
     return tuple(effect for effect in effects if effect.parameters), (note,) * bool(held)
 
@@ -402,12 +404,6 @@ def _held_coordinates(robot: Robot, unread: FloatArray) -> list[tuple[int, str]]
     order = qr((motions @ unread).T, mode="r", pivoting=True)[1]
     cables, axes = np.divmod(np.sort(order[: unread.shape[1]]), 3)
     return [(int(cable) + 1, _AXES[axis]) for cable, axis in zip(cables, axes, strict=True)]
-
-
-def _motion_names(motions: FloatArray) -> str:
-    """Return what motions that change no reading are called: those that have a share in them."""
-    shares = np.sum(motions**2, axis=1)
-    return ", ".join(name for name, share in zip(_MOTIONS, shares, strict=True) if share > 1e-6)
 
 
 def _rows(values: FloatArray, first: int) -> FloatArray:

@@ -57,10 +57,6 @@ class Estimate:
     std: float
 
 
-def _effect(effect: Effect) -> dict[str, object]:
-    return {**effect.identified(), "summary": effect.summary, "cause": effect.cause}
-
-
 def _rivals(keys: Sequence[str]) -> dict[str, object]:
     ids = dict.fromkeys(key.split(" of ")[0] for key in keys)
     return {"rivals": list(ids), "rival_keys": keys}
@@ -70,7 +66,9 @@ def _rivals(keys: Sequence[str]) -> dict[str, object]:
 class Finding:
     """An effect that the model lacked."""
 
-    effect: Effect = field(metadata={"json": _effect})  #: what it is
+    effect: Effect = field(
+        metadata={"json": lambda e: {**e.identified(), "summary": e.summary, "cause": e.cause}}
+    )  #: what it is
     parameters: Mapping[str, Estimate]  #: its numbers
     #: effects that this data cannot tell from it; several together are joined by ``and``
     rivals: tuple[str, ...] = field(metadata={"json": _rivals})

@@ -151,18 +151,6 @@ def _best_variance(trials: Sequence[EffectTrial]) -> float:
     return min((t.fit.variance for t in trials), default=1.0)
 
 
-def _acting_cables(effect: Effect, model: Fit) -> list[int]:
-    """Return the cables, from 1, whose own numbers of an effect do something for sure."""
-    (setting, at), *_ = (pair for pair in with_places(model.settings) if pair[0].effect is effect)
-    numbers = zip(effect.parameters, model.std[at].tolist(), strict=True)
-    return [
-        cable
-        for cable, (p, std) in enumerate(numbers, start=1)
-        if f"_{cable}_" in p.name
-        and abs(setting.values[p.name] - p.neutral) > _SIGNIFICANT_STD * std
-    ]
-
-
 @dataclass(eq=False)
 class Searcher:
     """Searches one data set."""
@@ -296,9 +284,16 @@ class Searcher:
     ) -> list[Effect]:
         """Return the effects with one more, exchanged and pruned."""
         self.progress(f"found {trial.effect.key}")
-        # What is worse alone is seldom better in the place of a member.
-        outsiders = [t.effect for t in trials[:8]]
-        return self._pruned(self._exchanged([*effects, trial.effect], trial.fit, outsiders))
+        extended = [*effects, trial.effect]
+        present = self.fit(extended, trial.fit)
+        # Greed errs at times: a member goes where an outsider is clearly better in its place. The
+        # newest was chosen among all; what is worse alone is seldom better in the place of another.
+        for k in range(len(effects)):
+            for outsider in trials[:8]:
+                extended, present = self._swapped(
+                    extended, present, k, outsider.effect, RIVAL_MARGIN
+                )
+        return self._pruned(extended)
 
     def fit(
         self,
@@ -479,7 +474,14 @@ class Searcher:
 
     def _groups(self, effect: Effect, present: Fit) -> list[tuple[Effect, ...]]:
         """Return effects, kind by kind, of the few cables that one for all cables acts on."""
-        acting = _acting_cables(effect, present)
+        ((setting, at),) = (p for p in with_places(present.settings) if p[0].effect is effect)
+        numbers = zip(effect.parameters, present.std[at].tolist(), strict=True)
+        acting = [  # cables, from 1, whose own numbers do something for sure
+            cable
+            for cable, (p, std) in enumerate(numbers, start=1)
+            if f"_{cable}_" in p.name
+            if abs(setting.values[p.name] - p.neutral) > _SIGNIFICANT_STD * std
+        ]
         if not 2 <= len(acting) <= min(_MAX_TOGETHER, len(effect.parameters) - 1):
             return []
         candidates = [
@@ -513,16 +515,6 @@ class Searcher:
                 loss += float(huber(self.problem.misfit(model.settings)[part]).sum())
             self._unseen[key] = loss
         return self._unseen[key]
-
-    def _exchanged(
-        self, effects: list[Effect], start: Fit, outsiders: Sequence[Effect]
-    ) -> list[Effect]:
-        """Replace a member by an outsider where that is clearly better: greed errs at times."""
-        present = self.fit(effects, start)
-        for k in range(len(effects) - 1):  # the newest was chosen among all
-            for outsider in outsiders:
-                effects, present = self._swapped(effects, present, k, outsider, RIVAL_MARGIN)
-        return effects
 
     def _swapped(
         self,

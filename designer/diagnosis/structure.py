@@ -509,8 +509,13 @@ def find_swapped(residual: FloatArray, predicted: FloatArray, rows: IntArray) ->
         pairs = [[*pair] for pair in combinations(channels, 2)]
         starts = {_exchanged_from(read[:, pair], predicted[:, pair]) for pair in pairs}
         for start in [*since, *sorted(starts | {0}, reverse=True)] if pairs else ():
-            early, late = (
-                _costs(read[part][:, channels], predicted[part][:, channels])
+            early, late = (  # mean square that each reading leaves with each prediction (n, n)
+                np.array(
+                    [
+                        [spread(read[part, y] - predicted[part, x]) ** 2 for x in channels]
+                        for y in channels
+                    ]
+                )
                 for part in (slice(start), slice(start, None))
             )
             fits, count = linear_sum_assignment(late)[1], len(texts)
@@ -529,11 +534,6 @@ def find_swapped(residual: FloatArray, predicted: FloatArray, rows: IntArray) ->
                 since.append(start)
                 break
     return Event(", ".join(texts), largest, 0.0, "mistake") if texts else None
-
-
-def _costs(read: FloatArray, predicted: FloatArray) -> FloatArray:
-    """Return the mean square that each reading leaves with each prediction (n, n)."""
-    return np.array([[spread(y - x) ** 2 for x in predicted.T] for y in read.T])
 
 
 def _exchanged_from(read: FloatArray, predicted: FloatArray) -> int:

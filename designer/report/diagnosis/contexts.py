@@ -7,7 +7,7 @@ asks for it, and once.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
 
@@ -193,39 +193,29 @@ def search(diagnosis: Diagnosis) -> Context:
 
 
 def design(diagnosis: Diagnosis) -> Context:
-    """What the better model does to the design, and the effects for the config."""
+    """What the better model does to the design, and the effects for the config, as YAML."""
+    from designer.diagnosis.design import declared_by
+    from designer.diagnosis.result import effects_table
+    from designer.documents.edits import block
+
     uses = (
         ("After", "the one chosen before", diagnosis.kept),
         ("Before", "on the machine", diagnosis.mounted_before),
         ("After", "on the machine", diagnosis.mounted_after),
     )
+    table = effects_table(declared_by(diagnosis))
+    before, after = diagnosis.design_before, diagnosis.design_after
+    names = ("diameter_m", "max_tension_N", "utilisation", "optimum_m", "optimum_tension_N")
+    changes = []  # relative, of each figure of the design; NaN where there is none
+    if before is not None and after is not None:
+        ratios = [getattr(after, name) / getattr(before, name) for name in names]
+        changes = [ratio - 1.0 if math.isfinite(ratio) else math.nan for ratio in ratios]
     return {
         "config": f"{diagnosis.study.source.path.stem}.diagnosed.yaml",
-        "effects": _effects_text(diagnosis),
-        "changes": list(_changes(diagnosis)),
+        "effects": f"{block({'effects': table})}\n" if table else "",
+        "changes": changes,
         "uses": [use for use in uses if use[2] is not None],
     }
-
-
-def _changes(diagnosis: Diagnosis) -> Iterator[float]:
-    """Yield the relative change of each figure of the design; NaN where there is none."""
-    before, after = diagnosis.design_before, diagnosis.design_after
-    if before is None or after is None:
-        return
-    names = ("diameter_m", "max_tension_N", "utilisation", "optimum_m", "optimum_tension_N")
-    for name in names:
-        ratio = getattr(after, name) / getattr(before, name)
-        yield ratio - 1.0 if math.isfinite(ratio) else math.nan
-
-
-def _effects_text(diagnosis: Diagnosis) -> str:
-    """Return the block ``effects`` as YAML; empty where there are none."""
-    from designer.diagnosis.design import declared_by
-    from designer.diagnosis.result import effects_table
-    from designer.documents.edits import block
-
-    table = effects_table(declared_by(diagnosis))
-    return f"{block({'effects': table})}\n" if table else ""
 
 
 def data(diagnosis: Diagnosis) -> Context:
