@@ -55,10 +55,6 @@ def _rotation(values: Values) -> FloatArray:
     return np.asarray(Rotation.from_rotvec(vector).as_matrix())
 
 
-def _shifted(poses: Poses, values: Values, *, machine: Machine) -> Poses:
-    return replace(poses, position_m=poses.position_m - _in_plane(machine, _point(values)))
-
-
 def _scaled(poses: Poses, values: Values, *, machine: Machine) -> Poses:
     moves = poses.position_m / values["scale"] - poses.position_m
     return replace(poses, position_m=poses.position_m + _in_plane(machine, moves))
@@ -156,7 +152,9 @@ POSE_OFFSET = Effect(
     law="measured position is the true one plus an offset",
     source="definition",
     parameters=_SHIFTS,
-    on_poses=_shifted,
+    on_poses=lambda poses, values, *, machine: replace(
+        poses, position_m=poses.position_m - _in_plane(machine, _point(values))
+    ),
     cause="setting_up",
     needs=frozenset({"pose"}),
     takes_machine=True,
