@@ -104,7 +104,13 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         e.key: stopped.get(e.key) or _missing(e, recorded) or _too_few(e, measured) for e in effects
     }
     visible = [e for e in effects if not skipped[e.key]]
-    unknown = [_less_known_zero(e, fixed) for e in visible if is_unknown(e, measurements)]
+    # A winch's scale is without its zero where the zeros of all are declared.
+    has_zeros = any(setting.effect.id == "length_offset" for setting in fixed)
+    unknown = [
+        e.beside({"length_offset"}) if has_zeros and e.id == "winch_scale" else e
+        for e in visible
+        if is_unknown(e, measurements)
+    ]
     n_sessions = len(measurements.sessions)
     unknown_alone = [less_given(e, unknown, n_sessions) for e in unknown]
     given = tuple(_as_unknown(e, measurements, machine) for e in unknown_alone if e.parameters)
@@ -115,8 +121,11 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     candidates = [e for e in visible if e.key not in given_keys]
     unshared = [less_given(e, given, n_sessions) for e in candidates]
     skipped |= {e.key: "is a part of what is unknown" for e in unshared if not e.parameters}
+    # On the machine a declared effect acts unseen; only wind has to be told.
     lacking = {
-        e.key: stopped.get(e.key) or _missing_in_sight(e, recorded) for e in fixed_effects.values()
+        e.key: stopped.get(e.key)
+        or (_missing(e, recorded) if e.on_machine is None or "wind" in e.needs else "")
+        for e in fixed_effects.values()
     }
     return Case(
         study,
@@ -179,25 +188,10 @@ def _as_unknown(effect: Effect, measurements: Measurements, machine: Machine) ->
     return replace(effect, parameters=tuple(parameters))
 
 
-def _less_known_zero(effect: Effect, fixed: Sequence[Setting]) -> Effect:
-    """Return a winch's scale without its zero, where the zeros of all are declared."""
-    is_declared = any(setting.effect.id == "length_offset" for setting in fixed)
-    return effect.beside({"length_offset"} if effect.id == "winch_scale" and is_declared else ())
-
-
 def _missing(effect: Effect, recorded: frozenset[str]) -> str:
     """Return what the data lack for an effect to show; empty where it shows."""
     missing = sorted(effect.needs - recorded)
     return f"needs {NEEDS[missing[0]]}" if missing else ""
-
-
-def _missing_in_sight(effect: Effect, recorded: frozenset[str]) -> str:
-    """Return what a declared effect lacks: on the machine it acts unseen, only wind has to be told.
-
-    Empty where it acts.
-    """
-    is_in_sight = effect.on_machine is None or "wind" in effect.needs
-    return _missing(effect, recorded) if is_in_sight else ""
 
 
 def _too_few(effect: Effect, measured: Measured) -> str:

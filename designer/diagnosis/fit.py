@@ -267,6 +267,22 @@ def _slopes(problem: Problem, settings: Sequence[Setting], moving: Setting) -> F
     return np.stack(slopes, axis=-1)
 
 
+class StartingPoint(NamedTuple):
+    """An effect where a fit may start: its values, the residual (n,) there, and slopes (n, p)."""
+
+    setting: Setting
+    residual: FloatArray
+    slopes: FloatArray
+
+    def moved(self, step: FloatArray) -> Setting:
+        """Return the values after a step (p,), within bounds."""
+        values = {
+            p.name: float(np.clip(self.setting.values[p.name] + change, *p.bounds))
+            for p, change in zip(self.setting.effect.parameters, step, strict=True)
+        }
+        return Setting(self.setting.effect, values)
+
+
 class LinearTrial(NamedTuple):
     """The robust loss after one linear step, without one more effect in the model and with it.
 
@@ -414,6 +430,48 @@ def _fit_from(
     return Fit(settings, answer.x, std, loss, count, inflation, wald, covariance)
 
 
+class StepTime(NamedTuple):
+    """A time [s] and its standard deviation [s]."""
+
+    time_s: float
+    std_s: float
+
+
+def step_time(
+    time_s: FloatArray, before: FloatArray, after: FloatArray, variance: float
+) -> StepTime | None:
+    r"""Return the time at which a step leaves least loss; None where too few rows show it.
+
+    With a step between two rows the loss is Σ before up to the one and Σ after from the other; the
+    time is midway. Within a gap between rows every time is as probable, and one gap against another
+    as exp(-loss / 2 variance) times its width (Hinkley, Biometrika 57 (1970) 1), from which the
+    deviation follows.
+
+    Parameters
+    ----------
+    time_s : array (n_rows,)
+        When the rows were taken [s].
+    before, after : array (n_rows,)
+        Loss of each row without the effect and with it; rows in which these are equal tell nothing.
+    variance : float
+        Of the residual, in the unit of the losses.
+    """
+    rows = np.flatnonzero(before != after)
+    if len(rows) < 2 * LEAST_ROWS:
+        return None
+    rows = rows[np.argsort(time_s[rows], kind="stable")]
+    last = np.arange(LEAST_ROWS - 1, len(rows) - LEAST_ROWS)  # before the step
+    starts, ends = time_s[rows[last]], time_s[rows[last + 1]]
+    width, middle = ends - starts, 0.5 * (starts + ends)
+    if not width.any():
+        return None
+    loss = np.where(width > 0.0, np.cumsum((before - after)[rows])[last], np.inf)
+    best = int(np.argmin(loss))
+    weight = width * np.exp(-0.5 * (loss - loss[best]) / variance)
+    square = weight @ ((middle - middle[best]) ** 2 + width**2 / 12.0) / weight.sum()
+    return StepTime(float(middle[best]), float(np.sqrt(square)))
+
+
 def _step_times(
     problem: Problem, settings: Sequence[Setting], mask: BoolArray, variance: float = 1.0
 ) -> dict[int, StepTime]:
@@ -467,64 +525,6 @@ def _doubts(
     with np.errstate(invalid="ignore"):  # what has no slope has no covariance
         covariance = bread / np.outer(deviation, deviation) * np.outer(std, std)
     return std, inflation, wald, covariance
-
-
-class StartingPoint(NamedTuple):
-    """An effect where a fit may start: its values, the residual (n,) there, and slopes (n, p)."""
-
-    setting: Setting
-    residual: FloatArray
-    slopes: FloatArray
-
-    def moved(self, step: FloatArray) -> Setting:
-        """Return the values after a step (p,), within bounds."""
-        values = {
-            p.name: float(np.clip(self.setting.values[p.name] + change, *p.bounds))
-            for p, change in zip(self.setting.effect.parameters, step, strict=True)
-        }
-        return Setting(self.setting.effect, values)
-
-
-class StepTime(NamedTuple):
-    """A time [s] and its standard deviation [s]."""
-
-    time_s: float
-    std_s: float
-
-
-def step_time(
-    time_s: FloatArray, before: FloatArray, after: FloatArray, variance: float
-) -> StepTime | None:
-    r"""Return the time at which a step leaves least loss; None where too few rows show it.
-
-    With a step between two rows the loss is Σ before up to the one and Σ after from the other; the
-    time is midway. Within a gap between rows every time is as probable, and one gap against another
-    as exp(-loss / 2 variance) times its width (Hinkley, Biometrika 57 (1970) 1), from which the
-    deviation follows.
-
-    Parameters
-    ----------
-    time_s : array (n_rows,)
-        When the rows were taken [s].
-    before, after : array (n_rows,)
-        Loss of each row without the effect and with it; rows in which these are equal tell nothing.
-    variance : float
-        Of the residual, in the unit of the losses.
-    """
-    rows = np.flatnonzero(before != after)
-    if len(rows) < 2 * LEAST_ROWS:
-        return None
-    rows = rows[np.argsort(time_s[rows], kind="stable")]
-    last = np.arange(LEAST_ROWS - 1, len(rows) - LEAST_ROWS)  # before the step
-    starts, ends = time_s[rows[last]], time_s[rows[last + 1]]
-    width, middle = ends - starts, 0.5 * (starts + ends)
-    if not width.any():
-        return None
-    loss = np.where(width > 0.0, np.cumsum((before - after)[rows])[last], np.inf)
-    best = int(np.argmin(loss))
-    weight = width * np.exp(-0.5 * (loss - loss[best]) / variance)
-    square = weight @ ((middle - middle[best]) ** 2 + width**2 / 12.0) / weight.sum()
-    return StepTime(float(middle[best]), float(np.sqrt(square)))
 
 
 _STEEP = 5.0

@@ -15,7 +15,7 @@ left; what is fitted is told in that frame.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -329,7 +329,12 @@ def with_frame_held(
     held = _held_coordinates(robot, motions)
     across = {axis for axis, share in zip(_AXES, np.abs(robot.level[1]), strict=True) if share == 1}
     still = {(cable, axis) for cable in unknown for axis in across if robot.is_planar} | set(held)
-    effects = [_without_held(effect, still) for effect in given]
+    effects = [
+        replace(e, parameters=tuple(p for p in e.parameters if (e.cable, p.name) not in still))
+        if e.id == "anchor_offset" and e.cable is not None
+        else e
+        for e in given
+    ]
     names = [f"{axis[0]} of exit point {cable}" for cable, axis in held]
     shares = np.sum(motions**2, axis=1)
     unread = [name for name, share in zip(_MOTIONS, shares, strict=True) if share > 1e-6]
@@ -415,10 +420,3 @@ def _rows(values: FloatArray, first: int) -> FloatArray:
 
 def _cables(robot: Robot) -> range:
     return range(1, robot.n_cables + 1)
-
-
-def _without_held(effect: Effect, still: Collection[tuple[int | None, str]]) -> Effect:
-    if effect.id != "anchor_offset" or effect.cable is None:
-        return effect
-    parameters = tuple(p for p in effect.parameters if (effect.cable, p.name) not in still)
-    return replace(effect, parameters=parameters)

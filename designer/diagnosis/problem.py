@@ -28,112 +28,6 @@ from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.taut import solve_taut
 from designer.statics.underactuated import imbalance, solve_underactuated
 
-# Slopes that were taken lately, which are good near the place where they were taken.
-#
-# What a reading gains by a parameter hardly changes while this and the others move by little. So a
-# fit that nears its end, or that adds an effect to a model, asks for few slopes anew. The price is
-# a fit off by a small share of its standard deviations; one that goes to the end asks for exact
-# slopes.
-
-_OWN_CHANGE, _OTHER_CHANGE = 0.02, 0.3
-"""By how much values of the effect itself, and of others, may have moved, over `_Values.unit`."""
-_MAX_PLACES = 12
-"""Those of the parts of one validation, and a few more."""
-
-
-class _Values(NamedTuple):
-    """Values of an effect, those at which it does nothing, and what counts as a change.
-
-    That is a typical change, or a tenth of the way from doing nothing where that is more.
-    """
-
-    values: FloatArray
-    neutral: FloatArray
-    unit: FloatArray
-
-
-_Place = Mapping[str, _Values]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _CachedSlopes:
-    place: _Place
-    trust: Hashable
-    slopes: dict[str, FloatArray]
-
-
-@dataclass(eq=False)
-class SlopeCache:
-    """Remembers slopes by the values of all effects; the latest places only."""
-
-    _taken: list[_CachedSlopes] = field(init=False, default_factory=list)
-
-    def of(
-        self,
-        settings: Sequence[Setting],
-        trust: Hashable,
-        compute: Callable[[Setting], FloatArray],
-        *,
-        nearly: bool,
-    ) -> FloatArray:
-        """Return the slopes (…, n_parameters) of all effects at their values.
-
-        Parameters
-        ----------
-        settings : sequence of Setting
-            The effects with their values.
-        trust : hashable
-            What else slopes depend on.
-        compute : callable
-            Returns the slopes in the parameters of one of the settings.
-        nearly : bool
-            Whether those of a place near by will do.
-        """
-        place = {s.effect.key: _values_of(s) for s in settings}
-        slopes: dict[str, FloatArray] = {}
-        for cached in reversed([t for t in self._taken if t.trust == trust]):
-            usable = _usable_slopes(place, cached, nearly=nearly) - slopes.keys()
-            slopes |= {key: cached.slopes[key] for key in usable}
-            if usable:  # those in use are the last to go
-                self._taken.remove(cached)
-                self._taken.append(cached)
-        fresh = {s.effect.key: compute(s) for s in settings if s.effect.key not in slopes}
-        if fresh:
-            self._taken = [*self._taken[1 - _MAX_PLACES :], _CachedSlopes(place, trust, fresh)]
-        slopes |= fresh
-        return np.concatenate([slopes[s.effect.key] for s in settings], axis=-1)
-
-
-def _values_of(setting: Setting) -> _Values:
-    effect = setting.effect
-    values = np.array([setting.values[p.name] for p in effect.parameters])
-    neutral = np.array([p.neutral for p in effect.parameters])
-    typical = np.array([p.typical for p in effect.parameters])
-    return _Values(values, neutral, np.maximum(typical, 0.1 * np.abs(values - neutral)))
-
-
-def _usable_slopes(place: _Place, cached: _CachedSlopes, *, nearly: bool) -> set[str]:
-    """Return the effects whose slopes, taken elsewhere, are good at a place."""
-    moved = {key: _distance(key, place, cached.place) for key in {**place, **cached.place}}
-    own_limit, other_limit = (_OWN_CHANGE, _OTHER_CHANGE) if nearly else (0.0, 0.0)
-    if max(moved.values()) > other_limit:
-        return set()
-    return {key for key in cached.slopes if key in place and moved[key] <= own_limit}
-
-
-def _distance(key: str, place: _Place, cached: _Place) -> float:
-    """Return how far an effect's values are apart; without the effect it does nothing."""
-    at_place, at_cached = place.get(key), cached.get(key)
-    present = at_place or at_cached
-    assert present is not None
-    a, b = (
-        present.neutral if values is None else values.values for values in (at_place, at_cached)
-    )
-    return float(np.max(np.abs(a - b) / present.unit))
-
-
-# The model of one session.
-
 
 def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None) -> Readings:
     """Return unstrained lengths and winch-side tensions of a machine in poses (n_rows,).
@@ -259,6 +153,112 @@ def true_readings(statics: Statics) -> Readings:
     """Return unstrained lengths and winch-side tensions."""
     return Readings(statics.length_m, statics.exit_tension_N)
 
+
+# Slopes that were taken lately, which are good near the place where they were taken.
+#
+# What a reading gains by a parameter hardly changes while this and the others move by little. So a
+# fit that nears its end, or that adds an effect to a model, asks for few slopes anew. The price is
+# a fit off by a small share of its standard deviations; one that goes to the end asks for exact
+# slopes.
+
+_OWN_CHANGE, _OTHER_CHANGE = 0.02, 0.3
+"""By how much values of the effect itself, and of others, may have moved, over `_Values.unit`."""
+_MAX_PLACES = 12
+"""Those of the parts of one validation, and a few more."""
+
+
+class _Values(NamedTuple):
+    """Values of an effect, those at which it does nothing, and what counts as a change.
+
+    That is a typical change, or a tenth of the way from doing nothing where that is more.
+    """
+
+    values: FloatArray
+    neutral: FloatArray
+    unit: FloatArray
+
+
+_Place = Mapping[str, _Values]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _CachedSlopes:
+    place: _Place
+    trust: Hashable
+    slopes: dict[str, FloatArray]
+
+
+@dataclass(eq=False)
+class SlopeCache:
+    """Remembers slopes by the values of all effects; the latest places only."""
+
+    _taken: list[_CachedSlopes] = field(init=False, default_factory=list)
+
+    def of(
+        self,
+        settings: Sequence[Setting],
+        trust: Hashable,
+        compute: Callable[[Setting], FloatArray],
+        *,
+        nearly: bool,
+    ) -> FloatArray:
+        """Return the slopes (…, n_parameters) of all effects at their values.
+
+        Parameters
+        ----------
+        settings : sequence of Setting
+            The effects with their values.
+        trust : hashable
+            What else slopes depend on.
+        compute : callable
+            Returns the slopes in the parameters of one of the settings.
+        nearly : bool
+            Whether those of a place near by will do.
+        """
+        place = {s.effect.key: _values_of(s) for s in settings}
+        slopes: dict[str, FloatArray] = {}
+        for cached in reversed([t for t in self._taken if t.trust == trust]):
+            usable = _usable_slopes(place, cached, nearly=nearly) - slopes.keys()
+            slopes |= {key: cached.slopes[key] for key in usable}
+            if usable:  # those in use are the last to go
+                self._taken.remove(cached)
+                self._taken.append(cached)
+        fresh = {s.effect.key: compute(s) for s in settings if s.effect.key not in slopes}
+        if fresh:
+            self._taken = [*self._taken[1 - _MAX_PLACES :], _CachedSlopes(place, trust, fresh)]
+        slopes |= fresh
+        return np.concatenate([slopes[s.effect.key] for s in settings], axis=-1)
+
+
+def _values_of(setting: Setting) -> _Values:
+    effect = setting.effect
+    values = np.array([setting.values[p.name] for p in effect.parameters])
+    neutral = np.array([p.neutral for p in effect.parameters])
+    typical = np.array([p.typical for p in effect.parameters])
+    return _Values(values, neutral, np.maximum(typical, 0.1 * np.abs(values - neutral)))
+
+
+def _usable_slopes(place: _Place, cached: _CachedSlopes, *, nearly: bool) -> set[str]:
+    """Return the effects whose slopes, taken elsewhere, are good at a place."""
+    moved = {key: _distance(key, place, cached.place) for key in {**place, **cached.place}}
+    own_limit, other_limit = (_OWN_CHANGE, _OTHER_CHANGE) if nearly else (0.0, 0.0)
+    if max(moved.values()) > other_limit:
+        return set()
+    return {key for key in cached.slopes if key in place and moved[key] <= own_limit}
+
+
+def _distance(key: str, place: _Place, cached: _Place) -> float:
+    """Return how far an effect's values are apart; without the effect it does nothing."""
+    at_place, at_cached = place.get(key), cached.get(key)
+    present = at_place or at_cached
+    assert present is not None
+    a, b = (
+        present.neutral if values is None else values.values for values in (at_place, at_cached)
+    )
+    return float(np.max(np.abs(a - b) / present.unit))
+
+
+# The model.
 
 Kind = tuple[object, ...]
 """A set of effects, whatever their values, with the noise that is assumed."""

@@ -252,7 +252,14 @@ class Searcher:
         """Return fits of the sets that promise most, where they are better than the present one."""
         part = f"instead of {' and '.join(effect.key for effect in effects) or 'nothing'}"
         better = []
-        for promise in self._promising_sets(effects, present, alone):
+        is_used = self.problem.used(self.rows)
+        off, now = (self.problem.misfit(model.settings)[is_used] for model in (alone, present))
+        given_slopes = np.empty((len(off), 0))
+        if self.given:
+            given_slopes = jacobian(self.problem, self.given, alone.vector, nearly=True)[is_used]
+        weight = HUBER / np.maximum(np.abs(now), HUBER)
+        linear = LinearModel(self._views, off, given_slopes, weight)
+        for promise in best_sets(linear, _penalty, effects, max(2, len(effects)), _MAX_SETS):
             together = [setting.effect for setting in promise]
             if self.progress.is_over:
                 break
@@ -265,19 +272,6 @@ class Searcher:
             if gain > margin and is_sure:
                 better.append(model)
         return better
-
-    def _promising_sets(
-        self, effects: Sequence[Effect], present: Fit, alone: Fit
-    ) -> list[tuple[Setting, ...]]:
-        """Return the few sets of candidates that promise most, beside the present one."""
-        is_used = self.problem.used(self.rows)
-        off, now = (self.problem.misfit(model.settings)[is_used] for model in (alone, present))
-        given_slopes = np.empty((len(off), 0))
-        if self.given:
-            given_slopes = jacobian(self.problem, self.given, alone.vector, nearly=True)[is_used]
-        weight = HUBER / np.maximum(np.abs(now), HUBER)
-        linear = LinearModel(self._views, off, given_slopes, weight)
-        return best_sets(linear, _penalty, effects, max(2, len(effects)), _MAX_SETS)
 
     def _extended(
         self, effects: Sequence[Effect], trial: EffectTrial, trials: Sequence[EffectTrial]
@@ -397,21 +391,20 @@ class Searcher:
             if settled or is_known or trial.chance >= SIGNIFICANCE:  # needs no proof
                 answer.append(trial)
                 continue
-            tested = self._with_drift_terms(trial, present, looks)
+            tested, gain = (
+                trial,
+                gain_in_drift(self.problem, present, trial.fit, trial.effect, self.rows),
+            )
+            if gain < trial.gain:  # no more than a drift of the readings leaves it
+                chance = _chance(gain, trial.effect, looks)
+                is_drift = chance >= SIGNIFICANCE
+                tested = replace(trial, gain=gain, chance=chance, is_drift=is_drift)
             if tested.chance < SIGNIFICANCE:
                 gain = self._unseen_loss(effects, present)
                 gain -= self._unseen_loss([*effects, trial.effect], trial.fit)
                 tested = replace(tested, heldout_gain=gain / trial.fit.variance)
             answer.append(tested)
         return answer
-
-    def _with_drift_terms(self, trial: EffectTrial, present: Fit, looks: int) -> EffectTrial:
-        """Return a trial with no more gain than a drift of the readings leaves it."""
-        gain = gain_in_drift(self.problem, present, trial.fit, trial.effect, self.rows)
-        if gain >= trial.gain:
-            return trial
-        chance = _chance(gain, trial.effect, looks)
-        return replace(trial, gain=gain, chance=chance, is_drift=chance >= SIGNIFICANCE)
 
     def rivals(
         self, effects: Sequence[Effect], effect: Effect, present: Fit, steps: Sequence[Step]
