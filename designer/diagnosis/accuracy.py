@@ -166,12 +166,7 @@ def bootstrap(unseen: FloatArray, block: IntArray) -> Interval:
 
     Blocks are drawn with replacement, since within a block rows may be alike.
 
-    Parameters
-    ----------
-    unseen : array (n_rows, n_channels)
-        Residuals; NaN where there is none.
-    block : array (n_rows,)
-        Number of the block of each row.
+    Residuals (n_rows, n_channels) are NaN where there is none; ``block`` is that of each row.
     """
     square = np.nansum(unseen**2, axis=1)
     count = np.sum(~np.isnan(unseen), axis=1)
@@ -225,12 +220,7 @@ def forward_error(
 ) -> ForwardError | None:
     """Return how well lengths alone foretell pose and tensions; None without any row or pose.
 
-    Parameters
-    ----------
-    problem, settings
-        Data, and the effects in the model.
-    chosen : array (n_rows,) of bool
-        Rows to compare; each has all lengths.
+    Of the rows ``chosen`` (n_rows,), each of which has all lengths.
     """
     measured = problem.measured
     rows = np.flatnonzero(chosen)

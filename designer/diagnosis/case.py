@@ -230,14 +230,8 @@ def first_noise(
     Samples of a motion: second differences of the residual, from which anything slow drops out.
     Poses at rest: differences between neighbours in space, which share what depends on the pose.
 
-    Parameters
-    ----------
-    measurements, measured, predict
-        What is declared, the data, the model as declared.
-    rows : array (n_rows,) of bool
-        What a fit may see.
-    effects : sequence of Effect
-        Unknown from the start: fitted first.
+    Of ``rows`` (n_rows,), which a fit may see, after ``effects`` that are unknown from the start
+    are fitted.
     """
     declared = measurements.declared_noise
     read = {kind.name for kind in KINDS if np.isfinite(kind.of(measured)).any()}
@@ -264,10 +258,7 @@ def first_noise(
 def rescaled(noise: Noise, measurements: Measurements, residual: FloatArray) -> Noise:
     """Return estimated noise corrected by the residual that a better model leaves.
 
-    Parameters
-    ----------
-    residual : array (n_rows, 2 n_cables)
-        In units of ``noise``.
+    The residual (n_rows, 2 n_cables) is in units of ``noise``.
     """
     length, tension = (_robust_std(kind) for kind in np.hsplit(residual, 2))
     return Noise(

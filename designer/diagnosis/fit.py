@@ -308,16 +308,8 @@ def linear_trial(
     nothing, as a score test has it (Rao, Proc. Cambridge Philos. Soc. 44, 1948), or from where a
     fit would start: the best of these.
 
-    Parameters
-    ----------
-    problem, rows
-        As for `fit`.
-    effects : sequence of Effect
-        All of the model with the effect, in the order in which they act.
-    present : Fit
-        The model without it.
-    effect : Effect
-        The one that is added.
+    ``effects`` are all of the model with the added one, in the order in which they act, and
+    ``present`` is the model without it.
     """
     is_used = problem.used(rows)
     problem.predict.trust_as(present.settings, effects, problem.noise)
@@ -447,14 +439,8 @@ def step_time(
     as exp(-loss / 2 variance) times its width (Hinkley, Biometrika 57 (1970) 1), from which the
     deviation follows.
 
-    Parameters
-    ----------
-    time_s : array (n_rows,)
-        When the rows were taken [s].
-    before, after : array (n_rows,)
-        Loss of each row without the effect and with it; rows in which these are equal tell nothing.
-    variance : float
-        Of the residual, in the unit of the losses.
+    Losses are of each row (n_rows,) without the effect and with it; rows in which these are equal
+    tell nothing.
     """
     rows = np.flatnonzero(before != after)
     if len(rows) < 2 * LEAST_ROWS:

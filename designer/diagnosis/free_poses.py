@@ -197,14 +197,7 @@ def first_poses(machine: Machine, measured: Measured, region: Region) -> Poses:
 
     The platform is level there. Lengths and tensions count over their scatter in the region.
 
-    Parameters
-    ----------
-    machine : Machine
-        With the declared effects.
-    measured : Measured
-        Rows without poses.
-    region : Region
-        Where the robot works.
+    The machine has the declared effects.
     """
     robot = machine.robot
     places = np.concatenate(list(region.samples_m(_CANDIDATES, "low_discrepancy", 0)))
@@ -235,11 +228,6 @@ def absorbed_by_poses(
 
     Such an effect, even as large as an engineer would believe, would leave less in the readings
     than a search takes for chance.
-
-    Parameters
-    ----------
-    problem, effects, unconditional, rows
-        As for `designer.diagnosis.search.Searcher`.
     """
     from scipy.stats import chi2
 
@@ -309,14 +297,7 @@ def with_frame_held(
 ) -> tuple[tuple[Effect, ...], tuple[str, ...]]:
     """Return what is unknown less the coordinates that hold the frame, and a note that names them.
 
-    Parameters
-    ----------
-    given : sequence of Effect
-        What is unknown.
-    robot : Robot
-        As drawn.
-    measured : Measured
-        Rows without poses, or with poses in part; where they roughly are.
+    The rows have no poses, or poses in part; where they roughly are is known.
     """
     unknown = {e.cable: {p.name for p in e.parameters} for e in given if e.id == "anchor_offset"}
     if not unknown:

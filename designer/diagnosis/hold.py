@@ -212,21 +212,9 @@ def keep_what_helps(
 
     Nor may it make one kind of reading worse there, whatever it does for the other.
 
-    Parameters
-    ----------
-    outcome : Outcome
-        Of a search to which the readings of held-out rows were not shown.
-    problem : Problem
-        The same problem with all readings.
-    heldout : array (n_rows,) of bool
-        The rows to predict.
-
-    Returns
-    -------
-    Outcome
-        With what is kept; its structure is that of all rows.
-    dict of str to Gain
-        Gain of each effect that is kept.
+    The search of the outcome was not shown the readings of held-out rows (n_rows,); ``problem`` has
+    all readings. Returns what is kept, with the structure of all rows, and the gain of each effect
+    that is kept.
     """
     gains: dict[str, Gain] = {}
 

@@ -392,16 +392,8 @@ def propose(
 ) -> Proposal:
     """Return the poses at which the predictions of two models, both fitted, differ most.
 
-    Parameters
-    ----------
-    problem : Problem
-        As in the diagnosis; the surroundings of a new pose are taken from the middle row.
-    region : Region or None
-        Where to look; the box of the measured poses if there is none.
-    fitted, rival : sequence of Setting
-        The two models.
-    names : tuple of str
-        What to call them.
+    The surroundings of a new pose are taken from the middle row. Where there is no region, poses
+    are sought in the box of the measured ones.
     """
     positions = _rival_positions(problem.measured, region)
     measured = _measured_at(problem.measured, positions)

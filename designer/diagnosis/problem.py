@@ -204,16 +204,8 @@ class SlopeCache:
     ) -> FloatArray:
         """Return the slopes (…, n_parameters) of all effects at their values.
 
-        Parameters
-        ----------
-        settings : sequence of Setting
-            The effects with their values.
-        trust : hashable
-            What else slopes depend on.
-        compute : callable
-            Returns the slopes in the parameters of one of the settings.
-        nearly : bool
-            Whether those of a place near by will do.
+        Those of a place near by will do where ``nearly``; ``trust`` is what else slopes depend on,
+        and ``compute`` returns those in the parameters of one of the settings.
         """
         place = {s.effect.key: _values_of(s) for s in settings}
         slopes: dict[str, FloatArray] = {}

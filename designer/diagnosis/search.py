@@ -626,16 +626,8 @@ class LinearModel:
     With r the residual without any of them, r_v that with effect v at its start, J the slopes and W
     the weights, a set leaves min over x of \|√W (r + Σ (r_v - r) + J x)\|², beside what is known.
 
-    Parameters
-    ----------
-    views : sequence of StartingPoint
-        All effects at all starts, over the same n readings.
-    residual : array (n,)
-        Without any of them.
-    known : array (n, p)
-        Slopes of what is in the model anyway.
-    weight : array (n,)
-        Of each reading's square.
+    Views are all effects at all starts, over the same n readings; ``known`` (n, p) are slopes of
+    what is in the model anyway, and ``weight`` (n,) is that of each reading's square.
     """
 
     def __init__(
@@ -691,18 +683,8 @@ def best_sets(
     Best first, after that step; without those present, and those that add one effect to them, which
     is what a search tries anyway. Of the present ones a step may promise what no fit reaches.
 
-    Parameters
-    ----------
-    model : LinearModel
-        What a set promises.
-    penalty : callable
-        What a set is to be better by for an effect.
-    present : collection of Effect
-        The set to replace, if any.
-    most : int
-        Effects in a set, at most.
-    count : int
-        Sets to return, at most.
+    A set of at most ``max_size`` effects is to be better by ``penalty`` for each; ``count`` sets
+    are returned at most.
     """
     effects = [view.setting.effect for view in model.views]
     present_keys = frozenset(effect.key for effect in present)

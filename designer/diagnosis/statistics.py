@@ -201,12 +201,8 @@ def lasting(residual: FloatArray) -> Lasting:
 def score_covariances(slopes: FloatArray, residual: FloatArray) -> Iterator[FloatArray]:
     """Yield the three estimates of the covariance of Jᵀr (n_parameters, n_parameters).
 
-    Parameters
-    ----------
-    slopes : array (n_rows, n_channels, n_parameters)
-        0 where nothing was fitted.
-    residual : array (n_rows, n_channels)
-        NaN where nothing was fitted.
+    Slopes (n_rows, n_channels, n_parameters) are 0, and the residual is NaN, where nothing was
+    fitted.
     """
     filled = np.nan_to_num(residual)
     rows = np.einsum("rcp,rc->rp", slopes, filled)

@@ -2,6 +2,9 @@
 
 Of a covariate that it goes with: in which reading, at which rows, and what is left of it then.
 Events are steps, ends of ranges, waves, exchanged plugs, mirrored frames, outliers that are alike.
+
+Residuals and predictions (n_rows, 2 n_cables), lengths first, are in units of noise and NaN where
+nothing was measured; ``rows`` (n_rows,) are the numbers that rows have in the file.
 """
 
 from __future__ import annotations
@@ -164,14 +167,7 @@ def find_structure(
     that lasts as long: any two things that drift go with each other. A drift much larger than the
     noise goes with the order of the rows, whatever else it goes with.
 
-    Parameters
-    ----------
-    residual : array (n_rows, 2 n_cables)
-        In units of noise; NaN where not measured.
-    covariates : mapping
-        From `covariates_of`.
-    settled : bool
-        Whether rows are poses at rest.
+    ``settled`` rows are poses at rest.
     """
     channels = channels_of(residual)
     if channels.shape[1] == 0 or not covariates:
@@ -391,12 +387,7 @@ def with_gross_errors(
     come by accident, with the rows among them whose poses are wrong; or so much that the fit, with
     all readings counted in full, is no nearer to them than the model before it.
 
-    Parameters
-    ----------
-    residual, unfitted : array (n_rows, 2 n_cables)
-        With and without what was fitted, in units of noise; NaN where not measured.
-    rows : array (n_rows,)
-        Numbers of the rows in the file.
+    Residuals are those with and without what was fitted.
     """
     if any(event.place == "mistake" for event in structure.events):
         return structure
@@ -460,18 +451,7 @@ def find_events(
     A step: the mean of a reading, or of all of a kind, differs before and after a row, more sharply
     than a cubic over the rows follows. The end of a range: from some value on, a reading falls
     short by all that is predicted beyond it. A wave in a cable's own length, as a drum off centre
-    makes it. Accident is drawn as in `designer.diagnosis.structure.find_structure`.
-
-    Parameters
-    ----------
-    residual, predicted : array (n_rows, 2 n_cables)
-        In units of noise; NaN where not measured.
-    lengths_m : array (n_rows, n_cables)
-        Predicted lengths [m].
-    structure : Structure
-        What the residual goes with among covariates.
-    rows : array (n_rows,)
-        Numbers of the rows in the file.
+    makes it. Accident is drawn as in `find_structure`.
     """
     waves = _waves(residual, lengths_m)
     candidates = (*_steps(residual, rows), *_ends(residual, predicted), *waves)
@@ -489,13 +469,6 @@ def find_swapped(residual: FloatArray, predicted: FloatArray, rows: IntArray) ->
     theirs, two or more in a ring, must so leave less than a tenth of the mean square that they
     leave as they are, each about its own mean, since a bias is no exchange. Two may be exchanged
     from a row on: before it, they must leave less as they are.
-
-    Parameters
-    ----------
-    residual, predicted : array (n_rows, 2 n_cables)
-        In units of noise; NaN where not measured.
-    rows : array (n_rows,)
-        Numbers of the rows in the file.
     """
     from scipy.optimize import linear_sum_assignment
 
@@ -591,15 +564,6 @@ def find_common(
 
     They may be of one sensor, in one range of rows, or at one end of a covariate: then they are no
     accidents. Chances are binomial, times the number of places that were looked at.
-
-    Parameters
-    ----------
-    residual : array (n_rows, 2 n_cables)
-        In units of noise; NaN where not measured.
-    covariates : mapping
-        From `designer.diagnosis.structure.covariates_of`.
-    rows : array (n_rows,)
-        Numbers of the rows in the file.
     """
     gone = is_outlier(residual)
     count = int(gone.sum())

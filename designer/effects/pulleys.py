@@ -37,14 +37,8 @@ def rebalancing_N(
 
     The least change that keeps the balance of straight cables, to first order.
 
-    Parameters
-    ----------
-    robot, poses
-        The robot, and its poses (n_rows,).
-    tension_N : array (n_rows, n_cables)
-        Before that [N].
-    moves_m : array (n_rows, n_cables, 3)
-        Of where straight cables leave their pulleys, upright frame [m].
+    Tensions (n_rows, n_cables) [N] are those before that; moves (n_rows, n_cables, 3) [m], upright
+    frame, those of where straight cables leave their pulleys.
     """
     leaving_m = straight_run(robot, poses).exit_points_m
     geometries = (

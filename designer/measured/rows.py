@@ -103,14 +103,7 @@ def cell_faults(assigned: Assigned) -> list[Fault]:
 def usable_rows(assigned: Assigned, n_cables: int, measurements: Measurements) -> Rows:
     """Return which rows have a pose and a reading.
 
-    Parameters
-    ----------
-    assigned : Assigned
-        The table with its columns assigned; some may be missing, which is not told again.
-    n_cables : int
-        Number of cables of the robot.
-    measurements : Measurements
-        Whether poses are asked for, and rows at rest, which may have the same time.
+    Columns that are missing are not told again.
     """
     every_row = np.ones(assigned.table.n_rows, dtype=np.bool_)
     has_pose, faults = _with_pose(assigned) if measurements.has_poses else (every_row, [])

@@ -52,15 +52,8 @@ class _LengthRatio:
 def unit_faults(robot: Robot, measured: Measured, file: str, *, is_homed: bool) -> list[Fault]:
     """Return lengths or positions that seem to be in another unit than metres.
 
-    Parameters
-    ----------
-    robot, measured
-        The robot as declared, and its log.
-    file : str
-        The log, for messages.
-    is_homed : bool
-        Whether the winches' offsets are known, so that the level of the lengths means something;
-        their spread over the rows always does.
+    Where ``is_homed`` the winches' offsets are known, so that the level of the lengths means
+    something; their spread over the rows always does.
     """
     chord = cable_geometry(robot, measured.poses).chord_m
     ratios = [
@@ -92,14 +85,7 @@ def sense_faults(
 ) -> list[Fault]:
     """Return what cannot be so, whatever effects the model may lack.
 
-    Parameters
-    ----------
-    robot, measured
-        The robot as declared, and its log.
-    table : LogTable
-        The file, for messages.
-    is_homed : bool
-        Whether the winches' offsets are known, so that lengths are positive.
+    Where ``is_homed`` the winches' offsets are known, so that lengths are positive.
     """
     faults = []
     poses = measured.poses
