@@ -171,7 +171,7 @@ class Searcher:
         """
         effects: list[Effect] = []
         steps: list[Step] = []
-        present = alone = self.fit(effects)
+        present = base_fit = self.fit(effects)
         visited: list[set[Effect]] = []
         while set(effects) not in visited:
             visited.append(set(effects))
@@ -191,16 +191,17 @@ class Searcher:
                 present = self.fit(effects, best[fewest].fit)
             before = effects
             if extended or not effects:  # else it was done when they were found
-                effects, present = self._looked_ahead(effects, present, alone)
+                effects, present = self._with_better_set(effects, present, base_fit)
             if trials:
                 instead = () if effects is before else tuple(effects)
                 steps.append(Step(tuple(trials), added, not is_over, passed_over, instead))
-        effects = self._parted(self._reconsidered(effects, present, steps), present)
-        effects = self._predicting(effects, present)
+        effects = self._with_better_members(effects, present, steps)
+        effects = self._split_into_parts(effects, present)
+        effects = self._without_useless(effects, present)
         return tuple(steps), self.fit(effects, present, thorough=True), tuple(effects)
 
-    def _looked_ahead(
-        self, effects: list[Effect], present: Fit, alone: Fit
+    def _with_better_set(
+        self, effects: list[Effect], present: Fit, base_fit: Fit
     ) -> tuple[list[Effect], Fit]:
         """Return other effects, no more than these or two, that together do better by a margin.
 
@@ -212,7 +213,7 @@ class Searcher:
         has_few_numbers = sum(map(_penalty, effects)) < RIVAL_MARGIN
         if is_explained and has_few_numbers:
             return effects, present
-        better = self._better_sets(effects, present, alone)
+        better = self._better_sets(effects, present, base_fit)
         if not better:
             return effects, present
         best = min(better, key=self._penalised)
@@ -248,15 +249,15 @@ class Searcher:
                 return False
         return True
 
-    def _better_sets(self, effects: Sequence[Effect], present: Fit, alone: Fit) -> list[Fit]:
+    def _better_sets(self, effects: Sequence[Effect], present: Fit, base_fit: Fit) -> list[Fit]:
         """Return fits of the sets that promise most, where they are better than the present one."""
         part = f"instead of {' and '.join(effect.key for effect in effects) or 'nothing'}"
         better = []
         is_used = self.problem.used(self.rows)
-        off, now = (self.problem.misfit(model.settings)[is_used] for model in (alone, present))
+        off, now = (self.problem.misfit(model.settings)[is_used] for model in (base_fit, present))
         given_slopes = np.empty((len(off), 0))
         if self.given:
-            given_slopes = jacobian(self.problem, self.given, alone.vector, nearly=True)[is_used]
+            given_slopes = jacobian(self.problem, self.given, base_fit.vector, nearly=True)[is_used]
         weight = HUBER / np.maximum(np.abs(now), HUBER)
         linear = LinearModel(self._views, off, given_slopes, weight)
         for promise in best_sets(linear, _penalty, effects, max(2, len(effects)), _MAX_SETS):
@@ -265,7 +266,7 @@ class Searcher:
                 break
             self.progress(f"{part}: {' and '.join(effect.key for effect in together)}")
             every = self._sorted([*self.given, *together])
-            model = fit(self.problem, every, self.rows, (*alone.settings, *promise), anew=True)
+            model = fit(self.problem, every, self.rows, (*base_fit.settings, *promise), anew=True)
             margin = RIVAL_MARGIN * max(model.inflation[effect.key] for effect in together)
             gain = (self._penalised(present) - self._penalised(model)) / model.variance
             is_sure = all(model.is_plausible(e) and not model.is_faint(e) for e in together)
@@ -530,7 +531,7 @@ class Searcher:
         better = (self._penalised(present) - self._penalised(model)) / model.variance
         return (swapped, model) if better > margin else (effects, present)
 
-    def _reconsidered(
+    def _with_better_members(
         self, effects: list[Effect], present: Fit, steps: Sequence[Step]
     ) -> list[Effect]:
         """Replace a member by what was as good when it was added, and is better beside them all.
@@ -563,7 +564,7 @@ class Searcher:
                     )
         return effects
 
-    def _parted(self, effects: list[Effect], present: Fit) -> list[Effect]:
+    def _split_into_parts(self, effects: list[Effect], present: Fit) -> list[Effect]:
         """Name the parts of a member in its place, if they do about as well together.
 
         Where they do better, also with values that are not plausible: then it is none of them.
@@ -594,7 +595,7 @@ class Searcher:
                 effects, present = rest, fewer
         return effects
 
-    def _predicting(self, effects: list[Effect], present: Fit) -> list[Effect]:
+    def _without_useless(self, effects: list[Effect], present: Fit) -> list[Effect]:
         """Leave out what no longer helps to predict rows that a fit has not seen."""
         loss = self._unseen_loss(effects, present) if len(effects) > 1 else 0.0
         for effect in list(effects):

@@ -342,7 +342,7 @@ _LEVEL_AXES, _LEVEL_NAMES = "xyz", tuple(f"euler_extrinsic_xyz_{k}" for k in (1,
 """Whole orientations are compared by these, which have no singular place near level."""
 
 
-def set_aside(assigned: Assigned, measurements: Measurements) -> Iterator[Fault]:
+def exclude_coordinates(assigned: Assigned, measurements: Measurements) -> Iterator[Fault]:
     """Take coordinates without a declared noise out of a log whose poses are unknown.
 
     Yields what the others lack.

@@ -21,9 +21,9 @@ from designer.measured.assign import (
     assign,
     complete,
     coordinates_of,
+    exclude_coordinates,
     length_names,
     orientation,
-    set_aside,
     tension_names,
 )
 from designer.measured.rows import (
@@ -71,7 +71,7 @@ def read_measured(study: Study) -> Measured:
         wrong_cells = [fault for part in parts for fault in cell_faults(part)]
         assigned = joined(parts, settled=measurements.settled)
         if not measurements.has_poses:
-            assigned.faults.extend(set_aside(assigned, measurements))
+            assigned.faults.extend(exclude_coordinates(assigned, measurements))
         complete(assigned, study, measurements)
         rows = usable_rows(assigned, study.robot.n_cables, measurements)
         faults = [*assigned.table.faults, *assigned.faults, *wrong_cells]
@@ -122,7 +122,7 @@ def _of_sessions(study: Study, measurements: Measurements) -> Measured:
         except InputError as error:
             faults.extend(error.faults)
     _refuse(faults)
-    return one_after_the_other(parts)
+    return concatenate_sessions(parts)
 
 
 def _refuse(faults: list[Fault]) -> None:
@@ -324,7 +324,7 @@ def _filled(values: FloatArray, time: FloatArray | None, name: str, notes: list[
 # Sessions.
 
 
-def one_after_the_other(sessions: Sequence[Measured]) -> Measured:
+def concatenate_sessions(sessions: Sequence[Measured]) -> Measured:
     """Return the rows of all sessions, of measured poses.
 
     Their times follow one another, and so do the numbers of their rows. What is not recorded in

@@ -280,13 +280,13 @@ def joined(parts: Sequence[Assigned], *, settled: bool) -> Assigned:
         first.awaited.update(name for part in further for name in (*part.ours, *part.awaited))
         return first
     for part in further:
-        _take(first, part, settled=settled)
+        _join_columns(first, part, settled=settled)
     digests = "".join(part.table.sha256 for part in parts)
     sha256 = hashlib.sha256(digests.encode()).hexdigest()
     return replace(first, table=replace(first.table, sha256=sha256))
 
 
-def _take(first: Assigned, part: Assigned, *, settled: bool) -> None:
+def _join_columns(first: Assigned, part: Assigned, *, settled: bool) -> None:
     """Give the columns of another file to the first, at its times."""
     first.notes.extend(part.notes)
     time, part_time = first.ours[TIME_NAME].values, part.ours[TIME_NAME].values

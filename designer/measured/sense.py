@@ -100,7 +100,7 @@ def sense_faults(
         problem = f"the temperature is about {middle:.4g}, as if it were in kelvin"
         expected = f"°C, or {{to: {TEMPERATURE_NAME}, unit: K}} in {_MAP}"
         faults.append(table.fault(None, TEMPERATURE_NAME, problem, expected))
-    faults += [*_wrong_cable(robot, measured, table), *_pushing(robot, measured, table)]
+    faults += [*_cable_faults(robot, measured, table), *_compression_faults(robot, measured, table)]
     if not faults and is_homed:
         names = length_names(robot.n_cables)
         negative = np.argwhere(measured.length_m.T <= 0.0)
@@ -117,7 +117,7 @@ def sense_faults(
             for cable, row in negative
         )
         faults += table.first_few(not_positive, len(negative), "lengths that are not positive")
-    return faults or list(_too_light(robot, measured, table))
+    return faults or list(_underweight_faults(robot, measured, table))
 
 
 def _length_ratio(length_m: FloatArray, chord_m: FloatArray, *, is_homed: bool) -> _LengthRatio:
@@ -137,14 +137,14 @@ def _about(values: Sequence[float]) -> str:
     return f"{float(f'{np.median(values):.2g}'):g}"
 
 
-def _wrong_cable(robot: Robot, measured: Measured, table: LogTable) -> list[Fault]:
+def _cable_faults(robot: Robot, measured: Measured, table: LogTable) -> list[Fault]:
     """Tell lengths that shrink as the distance grows, or that follow another cable's distance.
 
     Where all follow their own in a mirrored frame, that is told instead; of two cables only where
     it suits them better, since on a symmetrical robot their plugs may as well be exchanged.
     """
     names, faults = length_names(robot.n_cables), []
-    alike = _alike(robot, measured)
+    alike = _correlations(robot, measured)
     likest = alike.max(axis=1)
     for cable, best in enumerate(np.argmax(alike, axis=1)):
         if alike[cable, cable] < _UNLIKE and likest[cable] > _ALIKE:
@@ -159,7 +159,7 @@ def _wrong_cable(robot: Robot, measured: Measured, table: LogTable) -> list[Faul
         return faults
     read = np.isfinite(measured.length_m).any(axis=0)
     for text, view in left_handed(robot, measured):
-        agreement = np.diag(_alike(robot, view))[read]
+        agreement = np.diag(_correlations(robot, view))[read]
         better = len(faults) > 2 or np.mean(1.0 - agreement) < 0.5 * np.mean(1.0 - likest[read])
         if agreement.min() > _ALIKE and better:
             problem = f"suit the lengths with {text}: the frame of the poses is mirrored"
@@ -168,7 +168,7 @@ def _wrong_cable(robot: Robot, measured: Measured, table: LogTable) -> list[Faul
     return faults
 
 
-def _alike(robot: Robot, measured: Measured) -> FloatArray:
+def _correlations(robot: Robot, measured: Measured) -> FloatArray:
     """Return how each length goes with the distance to each exit point (n_cables, n_cables)."""
     chord_m = cable_geometry(robot, measured.poses).chord_m
     return np.array(
@@ -186,7 +186,7 @@ def _correlation(reading: FloatArray, prediction: FloatArray) -> float:
     return float(np.corrcoef(reading[seen], prediction[seen])[0, 1])
 
 
-def _pushing(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fault]:
+def _compression_faults(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fault]:
     """Tell load cells that read a push most of the time."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a column without any reading
@@ -198,7 +198,7 @@ def _pushing(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Faul
             yield table.fault(None, name, problem, f"a pull, or 'scale: -1' in {_MAP}")
 
 
-def _too_light(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fault]:
+def _underweight_faults(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fault]:
     total_N = measured.tension_N.sum(axis=1)
     pull_N = _pull_N(robot)
     # Cables pull along themselves, so that their tensions add up to the weight at least; half of it

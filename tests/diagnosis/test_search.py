@@ -89,14 +89,18 @@ def test_a_pair_is_found_though_others_suit_the_average_of_it(times_noise, tmp_p
     make(YARD3, effects, rows=60, seed=173).write(tmp_path)
     searcher = searcher_of(tmp_path)
     assert sorted(effect.id for effect in searcher.run()[2]) == sorted(effects)
-    monkeypatch.setattr(searcher, "_looked_ahead", lambda effects, present, _: (effects, present))
+    monkeypatch.setattr(
+        searcher, "_with_better_set", lambda effects, present, _: (effects, present)
+    )
     assert sorted(effect.id for effect in searcher.run()[2]) != sorted(effects)
 
 
 @pytest.mark.slow
 def test_it_ends_where_pruning_undoes_what_was_added(searcher, monkeypatch) -> None:
     monkeypatch.setattr(searcher, "_pruned", lambda found: [])
-    monkeypatch.setattr(searcher, "_looked_ahead", lambda effects, present, _: (effects, present))
+    monkeypatch.setattr(
+        searcher, "_with_better_set", lambda effects, present, _: (effects, present)
+    )
     steps, _, found = searcher.run()
     assert found == ()
     assert len(steps) == 1
@@ -105,7 +109,7 @@ def test_it_ends_where_pruning_undoes_what_was_added(searcher, monkeypatch) -> N
 def test_what_does_not_foretell_is_left_out(searcher) -> None:
     by_id = {effect.id: effect for effect in searcher.candidates}
     both = [by_id["platform_mass"], by_id["tension_bias"]]
-    kept = searcher._predicting(both, searcher.fit(both))
+    kept = searcher._without_useless(both, searcher.fit(both))
     assert [effect.id for effect in kept] == ["platform_mass"]
 
 
@@ -157,9 +161,9 @@ def test_a_force_gives_way_to_a_tilt_and_a_mass_that_do_as_well(tmp_path, robot)
     make(robot, {e: robot.draw(e, size_for(robot, e, 10.0)) for e in names}).write(tmp_path)
     search = searcher_of(tmp_path)
     (force,) = (e for e in search.candidates if e.id == "platform_force")
-    parted = search._parted([force], search.fit([force]))
+    parted = search._split_into_parts([force], search.fit([force]))
     assert {effect.id for effect in parted} == set(names)
-    assert [e.id for e in search._parted([], search.fit([]))] == []
+    assert [e.id for e in search._split_into_parts([], search.fit([]))] == []
 
 
 def test_of_laws_that_are_one_the_one_that_acts_first_is_named(searcher) -> None:
