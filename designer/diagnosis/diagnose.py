@@ -108,7 +108,7 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     outcome = _with_settled_noise(seen, ~heldout, progress)
     problem = Problem(measured, predict, outcome.problem.noise)
     outcome, gains = keep_what_helps(outcome, problem, heldout, progress)
-    # What is told of the model shall not depend on the path that the search took to it.
+    # What is reported of the model shall not depend on the path that the search took to it.
     problem = replace(problem, predict=predict.at(measured))
     return _diagnosis_of(case, outcome, problem, gains, heldout, progress)
 
@@ -121,7 +121,7 @@ def _diagnosis_of(
     heldout: BoolArray,
     progress: Pace,
 ) -> Diagnosis:
-    """Return all that is told of the model that a search ended with."""
+    """Return all that is reported of the model that a search ended with."""
     measured = case.measured
     base = fit(outcome.searcher.problem, case.given, ~heldout) if outcome.found else outcome.fit
     first, last = base.settings, outcome.fit.settings

@@ -2,7 +2,7 @@ r"""Noise that lasts over rows as a rival of every finding.
 
 Of each reading, the residual is taken as ``r = J δ + x + e``: what the parameters do, a part that
 keeps φ of itself from row to row (a random walk where φ is nearly 1), and a part that is each row's
-own. Which φ, and which share of the variance the former has, is told by the restricted likelihood
+own. Which φ, and which share of the variance the former has, is given by the restricted likelihood
 (Patterson and Thompson, Biometrika 58, 1971), in which the parameters have no part. A short series
 tells that badly, and rather too low than too high. So of what the likelihood does not exclude, and
 what is no less likely than white noise, that is taken of which a mean over the rows is the most in
@@ -31,7 +31,7 @@ _SHARES = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 0.9, 1.0)
 _NOT_EXCLUDED = 3.0
 """Logarithm of the likelihood's ratio to the best: one true noise in seventy is farther off."""
 _LEAST_FREEDOM = 10
-"""Readings beyond the parameters without which nothing is told of how noise lasts."""
+"""Readings beyond the parameters without which nothing is known of how noise lasts."""
 
 _LEAST_LEFT = 0.1
 """Of an error; what a row's unknowns take up whole is left to the digits of a slope."""
@@ -60,7 +60,7 @@ def gain_in_drift(
     for setting, columns in with_places(model.settings):
         own[columns] = setting.effect.key == effect.key
     free = problem.free_readings(mask) / max(mask.sum(), 1)
-    # Where coordinates of poses are among the channels, how their errors are left is not told.
+    # Where coordinates of poses are among the channels, how their errors are left is not known.
     is_mixed = problem.predict.row_unknowns and slopes.shape[1] == len(problem.sigma)
     shares = _shares_left(problem, model) if is_mixed else None
     return linear_gain_in_drift(before, after, slopes, own, free, shares)
@@ -150,17 +150,17 @@ def _shared_innovations(
     """
     decay, share, variance = noise
     stationary = share * variance
-    foretold, doubt = np.zeros(columns.shape[1:]), np.diag(stationary)
+    expected, doubt = np.zeros(columns.shape[1:]), np.diag(stationary)
     white = np.zeros_like(columns)
     for k, (row, read) in enumerate(zip(columns, is_read, strict=True)):
         directions, size, _ = np.linalg.svd(np.where(read[:, None], shares[k], 0.0))
         basis = directions[:, size > _LEAST_LEFT]
         mixing = basis.T @ np.where(read[:, None], shares[k], 0.0)
-        step = basis.T @ row - mixing @ foretold
+        step = basis.T @ row - mixing @ expected
         covariance = mixing @ (doubt + np.diag((1.0 - share) * variance)) @ mixing.T
         white[k, : len(step)] = np.linalg.solve(np.linalg.cholesky(covariance), step)
         weight = np.linalg.solve(covariance, mixing @ doubt).T
-        foretold = decay[:, None] * (foretold + weight @ step)
+        expected = decay[:, None] * (expected + weight @ step)
         doubt = decay[:, None] * (doubt - weight @ mixing @ doubt) * decay
         doubt += np.diag((1.0 - decay**2) * stationary)
     return white
@@ -223,11 +223,11 @@ def _innovations(
     decay, share : array (…, n_channels)
         Of noise of unit variance.
     """
-    foretold, doubt = np.zeros((*share.shape, columns.shape[-1])), share
+    expected, doubt = np.zeros((*share.shape, columns.shape[-1])), share
     for row, read in zip(columns, is_read, strict=True):
         variance = doubt + 1.0 - share
-        step = np.where(read[:, None], row - foretold, 0.0)
+        step = np.where(read[:, None], row - expected, 0.0)
         weight = np.where(read, doubt / variance, 0.0)
         yield step / np.sqrt(variance)[..., None], np.where(read, np.log(variance), 0.0)
-        foretold = decay[..., None] * (foretold + weight[..., None] * step)
+        expected = decay[..., None] * (expected + weight[..., None] * step)
         doubt = decay**2 * (1.0 - weight) * doubt + (1.0 - decay**2) * share

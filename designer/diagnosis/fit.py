@@ -4,7 +4,7 @@ Two things ask for care. The time from which an effect acts at once has no slope
 two rows. And at the edge of what the cables hold readings change much faster than the pose: a taut
 cable's length changes by no more than the pose does, but near the edge a cable hangs slack, and its
 length tells the pose of the model a thousand times better than any camera tells the true one. A fit
-that took the poses for exact would be settled by that row alone. Deviations are therefore told as
+that took the poses for exact would be settled by that row alone. Deviations are therefore given as
 if, in such rows, the poses had the noise of a length.
 """
 
@@ -23,7 +23,7 @@ from designer.effects.effect import Effect, Setting, Values, frame_size_m
 from designer.effects.platform_loads import LEAST_ROWS
 from designer.statics.forward import moved_poses
 
-_FORETOLD_RTOL = 0.1
+_LINEARITY_RTOL = 0.1
 """Of a change, by how much another may miss what slopes foretell: steps with them still do good."""
 _JUMP = 1e3
 """Of the noise and of the median row's change: no slope, but another balance of a fitted pose."""
@@ -358,7 +358,7 @@ def _fit_from(
 ) -> Fit:
     from scipy.optimize import least_squares
 
-    # Relative: the final model is told, a trial is only compared with others.
+    # Relative: the final model is reported, a trial is only compared with others.
     tolerance = 1e-8 if thorough else 1e-5
     parameters = [p for effect in effects for p in effect.parameters]
     low, high = np.array([p.bounds for p in parameters]).T
@@ -374,9 +374,9 @@ def _fit_from(
         residual = misfit(vector)
         if cached is not None and not thorough:
             place, before, slopes = cached
-            foretold = slopes @ (vector - place)
-            if np.linalg.norm(residual - before - foretold) < _FORETOLD_RTOL * np.linalg.norm(
-                foretold
+            linear_change = slopes @ (vector - place)
+            if np.linalg.norm(residual - before - linear_change) < _LINEARITY_RTOL * np.linalg.norm(
+                linear_change
             ):
                 return slopes
         slopes = jacobian(problem, effects, vector, nearly=not thorough)[mask]

@@ -10,7 +10,7 @@ Of exit points that were not measured either, nothing tells where their frame is
 and all poses may move together, as a rigid body, and no length changes; where the scale of every
 winch is unknown as well, they may grow. Coordinates of poses that were measured in part exclude
 what would change them. As many coordinates of exit points stay as drawn as there are such motions
-left; what is fitted is told in that frame.
+left; what is fitted is reported in that frame.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from designer.statics.forward import moved_poses
 from designer.statics.geometry import cable_geometry
 
 ABSORBED = "taken up by the estimated poses"
-"""Why an effect cannot be told."""
+"""Why an effect cannot be identified."""
 _CANDIDATES = 4000
 """Places to start from: neighbours are a sixteenth of the region's side apart."""
 _POSE_STEP = 1e-6

@@ -154,7 +154,7 @@ def plan(
     Raises
     ------
     InputError
-        If there is nothing to choose from, or to be told.
+        If there is nothing to choose from, or to be identified.
     """
     from threadpoolctl import threadpool_limits
 
@@ -359,7 +359,7 @@ _RIVAL_CANDIDATES = 2000
 _SPACING = 0.15
 """Share of the region between proposals: else all three would be one place."""
 _DISTINCT_STD = 3.0
-"""Standard deviations between two rivals that are told apart."""
+"""Standard deviations between two rivals that are distinguished."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -197,7 +197,7 @@ class Diagnosis:
     imbalance : array (n_rows,) or None
         What the final model leaves out of balance, over the platform's weight; None where there are
         as many cables as degrees of freedom.
-    foretold_before, foretold_after : Foretold or None
+    foretold_before, foretold_after : ForwardError or None
         Pose and tensions from lengths alone, by the first and the last stage; None where no
         held-out row has all lengths.
     design_before, design_after : RopeChoice or None
