@@ -341,8 +341,8 @@ def diagnose(
     from designer.cli.tables import print_check, print_diagnosis
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out
     from designer.io.output import file_names, output_folder, require_file
-    from designer.measured.formats import is_bag
     from designer.measured.read import read_measured
+    from designer.measured.table import is_bag
 
     study, plugins = study_of(config, no_plugins)
     if data is not None and study.measurements is not None:

@@ -16,8 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.edge import steepness
-from designer.diagnosis.fit import HUBER, Fit, jacobian
+from designer.diagnosis.fit import HUBER, Fit, jacobian, steepness
 from designer.diagnosis.problem import Problem
 from designer.effects.effect import Effect, Parameter
 
@@ -31,27 +30,16 @@ STRONG = 0.9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Calibrated:
-    """A fitted parameter.
+    """A fitted parameter."""
 
-    Parameters
-    ----------
-    effect, parameter
-        Which it is.
-    value, std : float
-        What was fitted, and its standard deviation; inf where the data settle no value.
-    influence : float
-        Its largest change where one row is left out, in standard deviations; NaN where no row has
-        a slope in it.
-    influence_row : int
-        That row, as numbered in the file.
-    """
-
-    effect: Effect = field(metadata={"json": Effect.identified})
+    effect: Effect = field(metadata={"json": Effect.identified})  #: which it is
     parameter: Parameter = field(metadata={"json": lambda p: {"name": p.name, "unit": p.unit}})
-    value: float
+    value: float  #: what was fitted, and its standard deviation; inf where the data settle no value
     std: float
+    #: its largest change where one row is left out, in standard deviations; NaN where no row has a
+    #: slope in it
     influence: float
-    influence_row: int
+    influence_row: int  #: that row, as numbered in the file
 
     @property
     def is_settled(self) -> bool:
@@ -74,27 +62,15 @@ class Correlated(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Calibration:
-    """How well the data settle what was fitted, unknowns from the start included.
+    """How well the data settle what was fitted, unknowns from the start included."""
 
-    Parameters
-    ----------
-    parameters : tuple of Calibrated
-        In the order in which the effects act.
-    covariance : array (n_parameters, n_parameters)
-        In that order, in SI units; NaN where the data settle no value.
-    condition : float
-        Condition number of the scaled Jacobian.
-    observability : float
-        Borm and Menq's O1 of it.
-    edge_rows : tuple of int
-        Rows, as numbered in the file, at the edge of what the cables hold; see
-        `designer.diagnosis.edge`.
-    """
-
-    parameters: tuple[Calibrated, ...]
+    parameters: tuple[Calibrated, ...]  #: in the order in which the effects act
+    #: (n_parameters, n_parameters): in that order, in SI units; NaN where the data settle no value
     covariance: FloatArray
-    condition: float
-    observability: float
+    condition: float  #: condition number of the scaled Jacobian
+    observability: float  #: Borm and Menq's O1 of it
+    #: rows, as numbered in the file, at the edge of what the cables hold; see
+    #: `designer.diagnosis.fit.steepness`
     edge_rows: tuple[int, ...] = ()
 
     @property
@@ -129,9 +105,9 @@ def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
     change = np.full((len(residual), len(pairs)), np.nan)
     change[:, has_slope] = _changes(slopes, np.nan_to_num(weight * residual))
     n_rows = int(np.isfinite(residual).any(axis=1).sum())
-    told = told_by(slopes, n_rows)
+    identifiability = identifiability_of(slopes, n_rows)
     std = fit.std.copy()
-    std[has_slope] = np.where(told.is_settled, std[has_slope], np.inf)
+    std[has_slope] = np.where(identifiability.is_settled, std[has_slope], np.inf)
     covariance = np.where(np.isfinite(np.outer(std, std)), fit.covariance, np.nan)
     sizes = np.abs(np.nan_to_num(change * typical / std))
     row, is_moved = np.argmax(sizes, axis=0), has_slope & np.isfinite(std)
@@ -147,30 +123,24 @@ def calibration_of(problem: Problem, fit: Fit) -> Calibration | None:
             for k, pair in enumerate(pairs)
         ),
         covariance,
-        told.condition,
-        told.observability,
+        identifiability.condition,
+        identifiability.observability,
         tuple(problem.measured.row_numbers[(doubt > 1.0).any(axis=1)].tolist()),
     )
 
 
-class Told(NamedTuple):
-    """What slopes tell of parameters; condition and observability as in `Calibration`.
+class Identifiability(NamedTuple):
+    """What slopes tell of parameters; condition and observability as in `Calibration`."""
 
-    Parameters
-    ----------
-    is_settled : array (n_parameters,) of bool
-        Which have a value of their own.
-    std : array (n_parameters,)
-        Standard deviations, in units of their typical changes; inf where not settled.
-    """
-
-    is_settled: BoolArray
+    is_settled: BoolArray  #: (n_parameters,): which have a value of their own
+    #: (n_parameters,): standard deviations, in units of their typical changes; inf where not
+    #: settled
     std: FloatArray
     condition: float
     observability: float
 
 
-def told_by(slopes: FloatArray, n_rows: int) -> Told:
+def identifiability_of(slopes: FloatArray, n_rows: int) -> Identifiability:
     """Return what slopes (…, n_parameters), in units of noise per typical change, tell."""
     triangle = np.linalg.qr(slopes.reshape(-1, slopes.shape[-1]), mode="r")
     _, singular, directions = np.linalg.svd(triangle)
@@ -183,7 +153,7 @@ def told_by(slopes: FloatArray, n_rows: int) -> Told:
         mean = float(np.exp(np.mean(np.log(singular))))
     condition = float(singular[0] / singular[-1]) if singular[-1] > 0.0 else math.inf
     settled = np.where(is_settled, std, np.inf)
-    return Told(is_settled, settled, condition, mean / math.sqrt(n_rows))
+    return Identifiability(is_settled, settled, condition, mean / math.sqrt(n_rows))
 
 
 def _changes(slopes: FloatArray, residual: FloatArray) -> FloatArray:

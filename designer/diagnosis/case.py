@@ -10,22 +10,13 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import fit
-from designer.diagnosis.free_poses import FreePredictor, first_poses
-from designer.diagnosis.gauge import in_a_held_frame
-from designer.diagnosis.problem import Predictor, Problem
-from designer.diagnosis.sessions import (
-    GOES_ON,
-    SessionsPredictor,
-    beside_given,
-    goes_on,
-    is_unknown,
-    with_those_of_sessions,
-)
+from designer.diagnosis.free_poses import FreePredictor, first_poses, with_frame_held
+from designer.diagnosis.problem import Predictor, Problem, SessionsPredictor
 from designer.diagnosis.statistics import heldout_rows, spread
 from designer.effects.effect import NEEDS, Effect, Setting, as_built, frame_size_m
-from designer.effects.load_step import LEAST_ROWS
+from designer.effects.platform_loads import LEAST_ROWS
 from designer.errors import InputError
-from designer.measured.left_handed import left_handed
+from designer.measured.sense import left_handed
 from designer.model.machine import Machine
 from designer.model.measured_data import KINDS, Measured, Noise
 from designer.model.measurements import Measurements
@@ -35,33 +26,19 @@ from designer.study import Study, declared_settings
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Case:
-    """What a diagnosis starts from.
+    """What a diagnosis starts from."""
 
-    Parameters
-    ----------
-    study, measurements, machine, measured
-        The study, its measurements, the machine as drawn, the data.
-    candidates : tuple of Effect
-        Effects that the data can show, in the order in which they act.
-    given : tuple of Effect
-        What is unknown from the start.
-    skipped : tuple of (effect, reason)
-        Effects that the data cannot show.
-    fixed : tuple of Setting
-        Declared effects that act on these data, less those that are unknown.
-    idle : tuple of (effect, reason)
-        Declared effects for which these data lack something.
-    """
-
-    study: Study
+    study: Study  #: the study, its measurements, the machine as drawn, the data
     measurements: Measurements
     machine: Machine
     measured: Measured
+    #: effects that the data can show, in the order in which they act
     candidates: tuple[Effect, ...]
-    given: tuple[Effect, ...]
-    skipped: tuple[tuple[str, str], ...]
+    given: tuple[Effect, ...]  #: what is unknown from the start
+    skipped: tuple[tuple[str, str], ...]  #: effects that the data cannot show
+    #: declared effects that act on these data, less those that are unknown
     fixed: tuple[Setting, ...] = ()
-    idle: tuple[tuple[str, str], ...] = ()
+    idle: tuple[tuple[str, str], ...] = ()  #: declared effects for which these data lack something
 
     def predictor(self) -> Predictor:
         """Return the model as declared, for these rows."""
@@ -80,14 +57,14 @@ class Case:
         def n_held(measured: Measured) -> int:
             return int((~np.isnan(predict.at(measured)(()).length_m).any(axis=1)).sum())
 
-        n_rows, held = self.measured.n_rows, n_held(self.measured)
-        if 2 * held < n_rows:
-            problem = f"the robot as declared can hold {held} of {n_rows} poses"
+        n_rows, n_rows_held = self.measured.n_rows, n_held(self.measured)
+        if 2 * n_rows_held < n_rows:
+            problem = f"the robot as declared can hold {n_rows_held} of {n_rows} poses"
             expected = "poses between its exit points, in the same frame and unit"
             views = left_handed(self.machine.robot, self.measured)
-            most, frame = max((n_held(view), frame) for frame, view in views)
-            if 2 * most > n_rows + held:
-                expected += f"; with {frame}, it can hold {most}"
+            n_held_mirrored, frame = max((n_held(view), frame) for frame, view in views)
+            if 2 * n_held_mirrored > n_rows + n_rows_held:
+                expected += f"; with {frame}, it can hold {n_held_mirrored}"
             raise self.fault(problem, expected)
 
 
@@ -113,40 +90,49 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     if not measured.has_poses and np.isnan(measured.poses.position_m).any():
         assert study.workspace is not None  # the config has been checked
         measured = replace(measured, poses=first_poses(built, measured, study.workspace.region))
-    settings = [*declared, *_of_sessions(study, measurements, machine)]
+    settings = [*declared, *_session_settings(study, measurements, machine)]
     fixed = [s for s in settings if not is_unknown(s.effect, measurements)]
     fixed_effects = {setting.effect.key: setting.effect for setting in fixed}
-    known = with_those_of_sessions(study.known_effects.of(built), measurements)
-    effects = [e for e in known if e.key not in fixed_effects]
+    possible = with_those_of_sessions(study.known_effects.of(built), measurements)
+    effects = [e for e in possible if e.key not in fixed_effects]
     recorded = _recorded(study, measured)
     if built.robot.pulley_radius_m or "pulley_radius" in measurements.all_unknown:
         recorded |= {"pulleys"}
-    ongoing = [e for e in (*effects, *fixed_effects.values()) if goes_on(e)]
-    stopped = {e.key: GOES_ON for e in ongoing if measurements.sessions}
+    ongoing = [e for e in (*effects, *fixed_effects.values()) if persists(e)]
+    stopped = {e.key: PERSISTS for e in ongoing if measurements.sessions}
     skipped = {
         e.key: stopped.get(e.key) or _missing(e, recorded) or _too_few(e, measured) for e in effects
     }
     visible = [e for e in effects if not skipped[e.key]]
-    unknown = [_less_known_zero(e, fixed) for e in visible if is_unknown(e, measurements)]
+    # A winch's scale is without its zero where the zeros of all are declared.
+    has_zeros = any(setting.effect.id == "length_offset" for setting in fixed)
+    unknown = [
+        e.beside({"length_offset"}) if has_zeros and e.id == "winch_scale" else e
+        for e in visible
+        if is_unknown(e, measurements)
+    ]
     n_sessions = len(measurements.sessions)
-    own = [beside_given(e, unknown, n_sessions) for e in unknown]
-    given = tuple(_as_unknown(e, measurements, machine) for e in own if e.parameters)
+    unknown_alone = [less_given(e, unknown, n_sessions) for e in unknown]
+    given = tuple(_as_unknown(e, measurements, machine) for e in unknown_alone if e.parameters)
     if not measured.has_poses:
-        given, note = in_a_held_frame(given, machine.robot, measured)
+        given, note = with_frame_held(given, machine.robot, measured)
         measured = replace(measured, notes=(*measured.notes, *note))
     given_keys = {e.key for e in given}
-    others = [e for e in visible if e.key not in given_keys]
-    beside = [beside_given(e, given, n_sessions) for e in others]
-    skipped |= {e.key: "is a part of what is unknown" for e in beside if not e.parameters}
+    candidates = [e for e in visible if e.key not in given_keys]
+    unshared = [less_given(e, given, n_sessions) for e in candidates]
+    skipped |= {e.key: "is a part of what is unknown" for e in unshared if not e.parameters}
+    # On the machine a declared effect acts unseen; only wind has to be told.
     lacking = {
-        e.key: stopped.get(e.key) or _missing_in_sight(e, recorded) for e in fixed_effects.values()
+        e.key: stopped.get(e.key)
+        or (_missing(e, recorded) if e.on_machine is None or "wind" in e.needs else "")
+        for e in fixed_effects.values()
     }
     return Case(
         study,
         measurements,
         machine,
         measured,
-        candidates=tuple(e for e in beside if e.parameters),
+        candidates=tuple(e for e in unshared if e.parameters),
         given=given,
         skipped=tuple((key, why) for key, why in skipped.items() if why),
         fixed=tuple(s for s in fixed if not lacking[s.effect.key]),
@@ -166,7 +152,7 @@ def _less_estimated_noise(measurements: Measurements, measured: Measured) -> Mea
     )
 
 
-def _of_sessions(study: Study, measurements: Measurements, machine: Machine) -> list[Setting]:
+def _session_settings(study: Study, measurements: Measurements, machine: Machine) -> list[Setting]:
     """Return the effects that are declared of single sessions."""
     return [
         replace(setting, effect=setting.effect.of_session(k))
@@ -179,7 +165,7 @@ def _of_sessions(study: Study, measurements: Measurements, machine: Machine) -> 
 
 _FAR_M = 1e6
 """Rows of different sessions are no neighbours."""
-_UNKNOWN = 10.0
+_UNKNOWN_FACTOR = 10.0
 """How many times as far as a finding that which is unknown may be from the drawing."""
 _OF_FRAME, _MORE_M, _AT_MOST_M = 0.1, 0.1, 3.0
 """How far a point of the frame, or a length, may be off that somebody has paced out, or taped round
@@ -189,7 +175,7 @@ corners: a tenth of the frame and 0.1 m, at most 3 m."""
 def _as_unknown(effect: Effect, measurements: Measurements, machine: Machine) -> Effect:
     """Return an effect with what is plausible of it where it is unknown from the start."""
     limit_m = next((m for name, m in measurements.plausible_m if effect.is_among([name])), None)
-    times = _UNKNOWN
+    times = _UNKNOWN_FACTOR
     if effect.id == "attachment_offset":
         times = 1.0
     elif effect.id in ("anchor_offset", "length_offset") and limit_m is None:
@@ -202,25 +188,10 @@ def _as_unknown(effect: Effect, measurements: Measurements, machine: Machine) ->
     return replace(effect, parameters=tuple(parameters))
 
 
-def _less_known_zero(effect: Effect, fixed: Sequence[Setting]) -> Effect:
-    """Return a winch's scale without its zero, where the zeros of all are declared."""
-    is_declared = any(setting.effect.id == "length_offset" for setting in fixed)
-    return effect.beside({"length_offset"} if effect.id == "winch_scale" and is_declared else ())
-
-
 def _missing(effect: Effect, recorded: frozenset[str]) -> str:
     """Return what the data lack for an effect to show; empty where it shows."""
     missing = sorted(effect.needs - recorded)
     return f"needs {NEEDS[missing[0]]}" if missing else ""
-
-
-def _missing_in_sight(effect: Effect, recorded: frozenset[str]) -> str:
-    """Return what a declared effect lacks: on the machine it acts unseen, only wind has to be told.
-
-    Empty where it acts.
-    """
-    is_in_sight = effect.on_machine is None or "wind" in effect.needs
-    return _missing(effect, recorded) if is_in_sight else ""
 
 
 def _too_few(effect: Effect, measured: Measured) -> str:
@@ -233,22 +204,18 @@ def _too_few(effect: Effect, measured: Measured) -> str:
 
 
 def _recorded(study: Study, measured: Measured) -> frozenset[str]:
+    chord_m = cable_geometry(study.robot, measured.poses).chord_m
+    signs = np.sign(np.diff(chord_m, axis=0))
+    n_reversals = np.sum(signs[1:] * signs[:-1] < 0.0, axis=0)
     recorded = {
         "motion": not measured.settled,
         "rotation": not study.robot.is_point_mass,
         "pose": measured.has_poses,
         "length": not np.isnan(measured.length_m).all(),
         "tension": not np.isnan(measured.tension_N).all(),
-        "reversals": _has_reversals(study, measured),
+        "reversals": bool((n_reversals >= LEAST_ROWS).any()),
     }
     return measured.columns | {name for name, is_there in recorded.items() if is_there}
-
-
-def _has_reversals(study: Study, measured: Measured) -> bool:
-    """Tell whether some cable turns round a few times at least, by its chord."""
-    chord_m = cable_geometry(study.robot, measured.poses).chord_m
-    signs = np.sign(np.diff(chord_m, axis=0))
-    return bool((np.sum(signs[1:] * signs[:-1] < 0.0, axis=0) >= LEAST_ROWS).any())
 
 
 def first_noise(
@@ -263,14 +230,8 @@ def first_noise(
     Samples of a motion: second differences of the residual, from which anything slow drops out.
     Poses at rest: differences between neighbours in space, which share what depends on the pose.
 
-    Parameters
-    ----------
-    measurements, measured, predict
-        What is declared, the data, the model as declared.
-    rows : array (n_rows,) of bool
-        What a fit may see.
-    effects : sequence of Effect
-        Unknown from the start: fitted first.
+    Of ``rows`` (n_rows,), which a fit may see, after ``effects`` that are unknown from the start
+    are fitted.
     """
     declared = measurements.declared_noise
     read = {kind.name for kind in KINDS if np.isfinite(kind.of(measured)).any()}
@@ -297,10 +258,7 @@ def first_noise(
 def rescaled(noise: Noise, measurements: Measurements, residual: FloatArray) -> Noise:
     """Return estimated noise corrected by the residual that a better model leaves.
 
-    Parameters
-    ----------
-    residual : array (n_rows, 2 n_cables)
-        In units of ``noise``.
+    The residual (n_rows, 2 n_cables) is in units of ``noise``.
     """
     length, tension = (_robust_std(kind) for kind in np.hsplit(residual, 2))
     return Noise(
@@ -329,3 +287,58 @@ def _fast_part(kind: FloatArray, measured: Measured) -> float:
 def _robust_std(values: FloatArray) -> float:
     """Standard deviation of the bulk; 1 where there are no values."""
     return 1.0 if np.isnan(values).all() else max(spread(values), 1e-12)
+
+
+# What differs between sessions of one machine that was measured several times.
+
+
+def may_be_of_session(effect: Effect) -> bool:
+    """Tell whether an effect may have come about between two sessions, and is looked for in one.
+
+    Those are errors of setting up, zeros of load cells, and exit points that have been moved.
+    """
+    return effect.cause == "setting_up" or effect.id in ("anchor_offset", "tension_bias")
+
+
+PERSISTS = "goes on from session to session, and their clocks do not tell how far"
+"""Why an effect is not looked for."""
+
+
+def persists(effect: Effect) -> bool:
+    """Tell whether an effect, such as creep, counts the time since it began."""
+    return "time" in effect.needs and not effect.needs_motion
+
+
+def is_unknown(effect: Effect, measurements: Measurements) -> bool:
+    """Tell whether an effect is unknown from the start, of the machine or of its session."""
+    if effect.session is None:
+        return effect.is_among(measurements.unknown)
+    of_session = measurements.sessions[effect.session - 1]
+    return replace(effect, session=None).is_among(of_session.unknown)
+
+
+def with_those_of_sessions(effects: Sequence[Effect], measurements: Measurements) -> list[Effect]:
+    """Return effects, then those that may be, or are unknown, of one session, for each of them."""
+    numbers = range(1, len(measurements.sessions) + 1)
+    variants = [(effect, effect.of_session(k)) for k in numbers for effect in effects]
+    return [
+        *effects,
+        *(e for effect, e in variants if may_be_of_session(effect) or is_unknown(e, measurements)),
+    ]
+
+
+def less_given(effect: Effect, given: Sequence[Effect], n_sessions: int) -> Effect:
+    """Return an effect without the numbers that are unknown wherever it acts.
+
+    That is what another effect has as unknown of the machine, of its own session, or of every
+    session, and not of another cable.
+    """
+    same_cable = [e for e in given if e is not effect and e.cable in (None, effect.cable)]
+    ids = {e.id for e in same_cable if e.session in (None, effect.session)}
+    if effect.session is None and n_sessions:
+        of_each = [{e.id for e in same_cable if e.session == k + 1} for k in range(n_sessions)]
+        of_every = set.intersection(*of_each)
+        if effect.id in of_every:
+            return replace(effect, parameters=())
+        ids |= of_every
+    return effect.beside(ids)

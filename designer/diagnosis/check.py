@@ -10,21 +10,19 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis import result
-from designer.diagnosis.case import case_of, first_noise
-from designer.diagnosis.errors_of import (
-    Foretold,
+from designer.diagnosis.accuracy import (
+    ForwardError,
     Interval,
     Outlier,
     bootstrap,
-    foretell,
+    forward_error,
     outliers_of,
 )
-from designer.diagnosis.events import with_given_up
+from designer.diagnosis.case import case_of, first_noise
 from designer.diagnosis.fit import fit
-from designer.diagnosis.hold import structure_left
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import block_of
-from designer.diagnosis.structure import Structure
+from designer.diagnosis.structure import Structure, structure_left, with_gross_errors
 from designer.documents.plain import Json, json_text, record
 from designer.effects.effect import Setting
 from designer.model.measured_data import KINDS, Measured, Noise
@@ -34,79 +32,44 @@ CARRIED = "as estimated when diagnosed"
 
 
 @dataclass(frozen=True, slots=True)
-class Left:
-    """What a model leaves of one kind of reading, nothing left out, in SI units.
+class RemainingError:
+    """What a model leaves of one kind of reading, nothing left out, in SI units."""
 
-    Parameters
-    ----------
-    rms : Interval
-        Root mean square.
-    median : float
-        Of the size of each error.
-    """
-
-    rms: Interval = field(metadata={"json": record})
-    median: float
+    rms: Interval = field(metadata={"json": record})  #: root mean square
+    median: float  #: of the size of each error
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Model:
-    """One model on the data.
+class ModelErrors:
+    """One model on the data."""
 
-    Parameters
-    ----------
-    settings : tuple of Setting
-        Its effects.
-    residual : array (n_rows, 2 n_cables)
-        Measured less predicted lengths [m], then tensions [N]; NaN where there is none.
-    n_not_held : int
-        Rows that this machine could not hold.
-    length_m, tension_N : Left or None
-        Over the rows that every model holds; None where nothing of the kind was measured.
-    foretold : Foretold or None
-        Pose and tensions by the lengths alone.
-    """
-
-    settings: tuple[Setting, ...]
+    settings: tuple[Setting, ...]  #: its effects
+    #: (n_rows, 2 n_cables): measured less predicted lengths [m], then tensions [N]; NaN where there
+    #: is none
     residual: FloatArray
-    n_not_held: int
-    length_m: Left | None
-    tension_N: Left | None
-    foretold: Foretold | None
+    n_not_held: int  #: rows that this machine could not hold
+    #: over the rows that every model holds; None where nothing of the kind was measured
+    length_m: RemainingError | None
+    tension_N: RemainingError | None
+    foretold: ForwardError | None  #: pose and tensions by the lengths alone
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Check:
-    """The declared model on data.
+    """The declared model on data."""
 
-    Parameters
-    ----------
-    study, measured, noise
-        The problem.
-    without, declared : Model
-        Without any effect, and with those that the config declares.
-    fitted : Model or None
-        Without any, but what the config calls unknown fitted to these very rows: the best that can
-        be said without the effects. None where nothing is unknown, or the rows are too few.
-    idle : tuple of (effect, reason)
-        Declared effects for which these data lack something.
-    n_compared : int
-        Rows that every model holds.
-    structure : Structure
-        Test of what the declared model leaves.
-    outliers : tuple of Outlier
-        Readings that stand off from the declared model; they are not left out.
-    """
-
-    study: Study
+    study: Study  #: the problem
     measured: Measured
     noise: Noise
-    without: Model
-    declared: Model
-    fitted: Model | None
-    idle: tuple[tuple[str, str], ...]
-    n_compared: int
-    structure: Structure
+    without: ModelErrors  #: without any effect, and with those that the config declares
+    declared: ModelErrors
+    #: without any, but what the config calls unknown fitted to these very rows: the best that can
+    #: be said without the effects. None where nothing is unknown, or the rows are too few.
+    fitted: ModelErrors | None
+    idle: tuple[tuple[str, str], ...]  #: declared effects for which these data lack something
+    n_compared: int  #: rows that every model holds
+    structure: Structure  #: test of what the declared model leaves
+    #: readings that stand off from the declared model; they are not left out
     outliers: tuple[Outlier, ...]
 
     @property
@@ -127,15 +90,15 @@ class Check:
         helps = self.helps or not self.declared.settings
         return holds and helps and not self.structure.is_present
 
-    def _betters(self, alternative: Model) -> bool:
+    def _betters(self, alternative: ModelErrors) -> bool:
         return self._size(self.declared) < self._size(alternative)
 
-    def _size(self, model: Model) -> float:
-        left = [(kind.of(model), kind.of(self.noise)) for kind in KINDS if kind.of(model)]
-        return float(sum((deviation.rms.value / noise) ** 2 for deviation, noise in left))
+    def _size(self, model: ModelErrors) -> float:
+        remaining = [(kind.of(model), kind.of(self.noise)) for kind in KINDS if kind.of(model)]
+        return float(sum((deviation.rms.value / noise) ** 2 for deviation, noise in remaining))
 
     @property
-    def models(self) -> list[tuple[str, Model]]:
+    def models(self) -> list[tuple[str, ModelErrors]]:
         """Each model with what to call it."""
         models = [("without effects", self.without)]
         if self.fitted is not None:
@@ -195,7 +158,9 @@ class Check:
                 "stands": self.is_positive,
             },
             "effects": result.effects_table(self.study.effects),
-            "session_effects": [result.effects_table(own) for own in self.study.session_effects],
+            "session_effects": [
+                result.effects_table(effects) for effects in self.study.session_effects
+            ],
             "idle": result.reasons(self.idle),
             "unexplained": result.structure_dict(self.structure),
             "noise": self.noise,
@@ -268,7 +233,7 @@ def _check(study: Study, measured: Measured, progress: Callable[[str], None]) ->
         fitted=models.get("fitted"),
         idle=case.idle,
         n_compared=int(compared.sum()),
-        structure=with_given_up(
+        structure=with_gross_errors(
             structure_left(declared, (), everywhere), residual, residual, measured.row_numbers
         ),
         outliers=outliers_of(residual, measured.row_numbers),
@@ -277,23 +242,23 @@ def _check(study: Study, measured: Measured, progress: Callable[[str], None]) ->
 
 def _model(
     problem: Problem, settings: tuple[Setting, ...], mask: BoolArray, compared: BoolArray
-) -> Model:
+) -> ModelErrors:
     residual = problem.measured.readings - problem.predicted(settings).stacked
     length_m, tension_N = np.hsplit(residual, 2)
     has_lengths = np.isfinite(problem.measured.length_m).all(axis=1)
-    return Model(
+    return ModelErrors(
         settings=settings,
         residual=residual,
         n_not_held=int((~mask).sum()),
-        length_m=_left(length_m, compared),
-        tension_N=_left(tension_N, compared),
-        foretold=foretell(problem, settings, compared & has_lengths),
+        length_m=_remaining_error(length_m, compared),
+        tension_N=_remaining_error(tension_N, compared),
+        foretold=forward_error(problem, settings, compared & has_lengths),
     )
 
 
-def _left(residual: FloatArray, rows: BoolArray) -> Left | None:
+def _remaining_error(residual: FloatArray, rows: BoolArray) -> RemainingError | None:
     seen = residual[rows]
     if np.isnan(seen).all():
         return None
     interval = bootstrap(seen, block_of(len(residual))[rows])
-    return Left(interval, float(np.nanmedian(np.abs(seen))))
+    return RemainingError(interval, float(np.nanmedian(np.abs(seen))))

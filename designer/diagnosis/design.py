@@ -57,12 +57,14 @@ def spreads_of(diagnosis: Diagnosis) -> dict[str, float]:
         return {}  # only what one rope on all cables meets is drawn
     stated = study.uncertainty or Uncertainty()
     spreads = {}
-    of_machine = [each for each in calibration.parameters if each.effect.session is None]
+    of_machine = [
+        parameter for parameter in calibration.parameters if parameter.effect.session is None
+    ]
     for fitted in of_machine:
         if fitted.effect.id == "platform_mass" and stated.payload is None:
             mass_kg = robot.platform.mass_kg + fitted.value
             spreads["payload"] = min(fitted.std / mass_kg, MOST_DEVIATION)
-    points = [each for each in of_machine if each.effect.id == "anchor_offset"]
+    points = [fitted for fitted in of_machine if fitted.effect.id == "anchor_offset"]
     is_whole = len(points) >= robot.exit_points_m.size
     if points and (is_whole or stated.exit_points_m is None):
         squares = sum(fitted.std**2 for fitted in points) / robot.exit_points_m.size

@@ -8,28 +8,21 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import BoolArray
-from designer.diagnosis.calibration import calibration_of
-from designer.diagnosis.case import Case, case_of, first_noise, rescaled
-from designer.diagnosis.errors_of import (
+from designer.diagnosis.accuracy import (
     Stage,
     errors_of_sessions,
-    foretell,
+    forward_error,
     outliers_of,
     stage,
     with_sound_lengths,
 )
-from designer.diagnosis.events import with_given_up
+from designer.diagnosis.calibration import calibration_of
+from designer.diagnosis.case import Case, case_of, first_noise, rescaled
 from designer.diagnosis.fit import Fit, fit, with_places
-from designer.diagnosis.free_poses import FreePredictor, taken_up
-from designer.diagnosis.hold import (
-    Gain,
-    Outcome,
-    keep_what_helps,
-    search_and_hold,
-    structure_left,
-)
+from designer.diagnosis.free_poses import FreePredictor, absorbed_by_poses
+from designer.diagnosis.hold import Gain, Outcome, keep_what_helps, search_and_hold
+from designer.diagnosis.plan import Proposal, propose
 from designer.diagnosis.problem import Problem, imbalance_of
-from designer.diagnosis.proposals import Proposal, propose
 from designer.diagnosis.result import Diagnosis, Estimate, Finding
 from designer.diagnosis.search import without
 from designer.diagnosis.statistics import heldout_rows, without_outliers
@@ -37,11 +30,13 @@ from designer.diagnosis.structure import (
     covariates_of,
     is_one_smooth_error,
     smooth_correction,
+    structure_left,
     whereabouts,
+    with_gross_errors,
 )
 from designer.effects.effect import Effect
-from designer.effects.platform_force import EFFECT as FORCE
-from designer.effects.poses import DISTORTION
+from designer.effects.platform_loads import PLATFORM_FORCE
+from designer.effects.setting_up import POSE_DISTORTION
 from designer.errors import EffectError
 from designer.model.measured_data import Measured
 from designer.progress import Pace
@@ -69,7 +64,7 @@ def diagnose_study(
     measurements = study.measurements
     assert measurements is not None
     asked_for = {effect.id for effect in study.effects} | set(measurements.all_unknown)
-    asked_for |= {effect.id for own in study.session_effects for effect in own}
+    asked_for |= {effect.id for effects in study.session_effects for effect in effects}
     while True:
         try:
             return diagnose(case_of(study, measurements, measured), progress)
@@ -106,24 +101,19 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     # Whatever is decided on the way is decided without them: noise, effects, what is withdrawn.
     seen = replace(case, measured=measured.without_readings(heldout))
     if not measured.has_poses:
-        hidden = _taken_up(seen, ~heldout)
+        noise = first_noise(seen.measurements, seen.measured, seen.predictor(), ~heldout)
+        unfitted = Problem(seen.measured, seen.predictor(), noise)
+        hidden = dict(absorbed_by_poses(unfitted, (*seen.given, *seen.candidates), (), ~heldout))
         case, seen = _without(case, hidden), _without(seen, hidden)
     outcome = _with_settled_noise(seen, ~heldout, progress)
     problem = Problem(measured, predict, outcome.problem.noise)
     outcome, gains = keep_what_helps(outcome, problem, heldout, progress)
-    # What is told of the model shall not depend on the path that the search took to it.
+    # What is reported of the model shall not depend on the path that the search took to it.
     problem = replace(problem, predict=predict.at(measured))
-    return _told(case, outcome, problem, gains, heldout, progress)
+    return _diagnosis_of(case, outcome, problem, gains, heldout, progress)
 
 
-def _taken_up(seen: Case, rows: BoolArray) -> dict[str, str]:
-    """Return the effects that estimated poses take up, each with the reason."""
-    noise = first_noise(seen.measurements, seen.measured, seen.predictor(), rows)
-    unfitted = Problem(seen.measured, seen.predictor(), noise)
-    return dict(taken_up(unfitted, (*seen.given, *seen.candidates), (), rows))
-
-
-def _told(
+def _diagnosis_of(
     case: Case,
     outcome: Outcome,
     problem: Problem,
@@ -131,7 +121,7 @@ def _told(
     heldout: BoolArray,
     progress: Pace,
 ) -> Diagnosis:
-    """Return all that is told of the model that a search ended with."""
+    """Return all that is reported of the model that a search ended with."""
     measured = case.measured
     base = fit(outcome.searcher.problem, case.given, ~heldout) if outcome.found else outcome.fit
     first, last = base.settings, outcome.fit.settings
@@ -140,18 +130,23 @@ def _told(
         measured = replace(measured, poses=problem.predict.poses(last, problem.noise))
     compared = heldout & with_sound_lengths(problem, last)
     covariates = covariates_of(measured, problem.surroundings(last))
-    rivals = {e.key: _rivals(outcome, e) for e in outcome.found}
+    rivals = {}  # of each finding, by what they are called
+    for effect in outcome.found:
+        groups = outcome.searcher.rivals(outcome.found, effect, outcome.fit, outcome.steps)
+        rivals[effect.key] = {" and ".join(e.key for e in group): group for group in groups}
     shared: dict[str, tuple[Effect, ...]] = {}
     is_several = len(outcome.found) > 2 and case.measured.has_poses
     if is_several and is_one_smooth_error(before, after, measured.poses.position_m, heldout):
         # A force that changes with the place, where tensions were read.
-        cause = DISTORTION if np.isnan(measured.tension_N).all() else FORCE
+        cause = POSE_DISTORTION if np.isnan(measured.tension_N).all() else PLATFORM_FORCE
         shared = {cause.id: (cause,)}
     findings = tuple(
         _finding(outcome, e, gains[e.key], rivals[e.key] | shared) for e in outcome.found
     )
     findings = _with_one_force(findings)
-    structure = with_given_up(outcome.structure, after, problem.residual(()), measured.row_numbers)
+    structure = with_gross_errors(
+        outcome.structure, after, problem.residual(()), measured.row_numbers
+    )
     trend = correction = None
     if structure.present:
         name = structure.present[0].name
@@ -180,8 +175,8 @@ def _told(
         correction=correction,
         proposals=_proposals(case, outcome, rivals),
         doubts=tuple(_doubts(case, outcome.fit)),
-        foretold_before=foretell(problem, first, compared),
-        foretold_after=foretell(problem, last, compared),
+        foretold_before=forward_error(problem, first, compared),
+        foretold_after=forward_error(problem, last, compared),
         not_tried=progress.left_out,
         imbalance=imbalance_of(problem.predict, last),
         predicted_before=problem.predicted(first),
@@ -224,16 +219,14 @@ def _with_one_force(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
     One that changes with the place: a constant one does what most of them do, and heavier ropes
     pull the more, the farther away the platform is.
     """
-    others = {finding.effect.id for finding in findings if FORCE.id not in finding.rivals}
-    if len(findings) < 3 or others != {"linear_mass"}:
+    exceptions = {
+        finding.effect.id for finding in findings if PLATFORM_FORCE.id not in finding.rivals
+    }
+    if len(findings) < 3 or exceptions != {"linear_mass"}:
         return findings
-    return tuple(replace(f, rivals=tuple(dict.fromkeys([*f.rivals, FORCE.id]))) for f in findings)
-
-
-def _rivals(outcome: Outcome, effect: Effect) -> dict[str, tuple[Effect, ...]]:
-    """Return what may stand in place of a finding, by what it is called."""
-    rivals = outcome.searcher.rivals(outcome.found, effect, outcome.fit, outcome.steps)
-    return {" and ".join(e.key for e in together): together for together in rivals}
+    return tuple(
+        replace(f, rivals=tuple(dict.fromkeys([*f.rivals, PLATFORM_FORCE.id]))) for f in findings
+    )
 
 
 def _finding(
@@ -246,10 +239,10 @@ def _finding(
         if not p.is_shape
     )
     doubt = "no value of it is further from doing nothing than twice its standard deviation"
-    offsets = [each.value for each in estimate.values()] if effect.id == "tension_bias" else []
+    offsets = [number.value for number in estimate.values()] if effect.id == "tension_bias" else []
     is_alike = len(offsets) > 2 and bool(np.std(offsets) < _ALIKE * abs(np.mean(offsets)))
     common = "all cells are off alike, as by a force that all cables share"
-    force = [FORCE.id] * (is_alike and FORCE.id not in rivals)
+    force = [PLATFORM_FORCE.id] * (is_alike and PLATFORM_FORCE.id not in rivals)
     set_up = [
         name
         for name, together in rivals.items()

@@ -2,7 +2,7 @@ r"""Noise that lasts over rows as a rival of every finding.
 
 Of each reading, the residual is taken as ``r = J δ + x + e``: what the parameters do, a part that
 keeps φ of itself from row to row (a random walk where φ is nearly 1), and a part that is each row's
-own. Which φ, and which share of the variance the former has, is told by the restricted likelihood
+own. Which φ, and which share of the variance the former has, is given by the restricted likelihood
 (Patterson and Thompson, Biometrika 58, 1971), in which the parameters have no part. A short series
 tells that badly, and rather too low than too high. So of what the likelihood does not exclude, and
 what is no less likely than white noise, that is taken of which a mean over the rows is the most in
@@ -20,9 +20,10 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import HUBER, Fit, jacobian, with_places
 from designer.diagnosis.problem import Problem
-from designer.diagnosis.statistics import beside, orthonormal, without_outliers
-from designer.effects import tension_gain, winch_scale
+from designer.diagnosis.statistics import orthonormal, outside_span, without_outliers
 from designer.effects.effect import Effect, Setting
+from designer.effects.load_cells import TENSION_BIAS
+from designer.effects.winches import LENGTH_OFFSET
 
 _DECAYS = (0.5, 0.8, 0.9, 0.95, 0.98, 0.995)
 """The last keeps half of itself over 140 rows: to a log of some hundred, a random walk."""
@@ -30,13 +31,15 @@ _SHARES = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 0.9, 1.0)
 _NOT_EXCLUDED = 3.0
 """Logarithm of the likelihood's ratio to the best: one true noise in seventy is farther off."""
 _LEAST_FREEDOM = 10
-"""Readings beyond the parameters without which nothing is told of how noise lasts."""
+"""Readings beyond the parameters without which nothing is known of how noise lasts."""
 
 _LEAST_LEFT = 0.1
 """Of an error; what a row's unknowns take up whole is left to the digits of a slope."""
 
 
-def beside_drift(problem: Problem, rest: Fit, model: Fit, effect: Effect, rows: BoolArray) -> float:
+def gain_in_drift(
+    problem: Problem, rest: Fit, model: Fit, effect: Effect, rows: BoolArray
+) -> float:
     """Return the gain of an effect in a noise that may drift, over rows (n_rows,) that were fitted.
 
     In units of the variance, and for as many independent readings as there are; ``rest`` is fitted
@@ -57,13 +60,13 @@ def beside_drift(problem: Problem, rest: Fit, model: Fit, effect: Effect, rows: 
     for setting, columns in with_places(model.settings):
         own[columns] = setting.effect.key == effect.key
     free = problem.free_readings(mask) / max(mask.sum(), 1)
-    # Where coordinates of poses are among the channels, how their errors are left is not told.
+    # Where coordinates of poses are among the channels, how their errors are left is not known.
     is_mixed = problem.predict.row_unknowns and slopes.shape[1] == len(problem.sigma)
     shares = _shares_left(problem, model) if is_mixed else None
-    return gain_beside_drift(before, after, slopes, own, free, shares)
+    return linear_gain_in_drift(before, after, slopes, own, free, shares)
 
 
-def gain_beside_drift(
+def linear_gain_in_drift(
     before: FloatArray,
     after: FloatArray,
     slopes: FloatArray,
@@ -94,8 +97,8 @@ def gain_beside_drift(
     residuals = np.where(is_read[..., None], np.stack([after, before], axis=-1), 0.0)
     left_of = np.full(is_read.shape[1], free)
     if shares is not None:  # of the variance, in rows that were fitted
-        kept = np.sum(shares[np.flatnonzero(is_read.any(axis=1))] ** 2, axis=-1)
-        left_of = np.maximum(kept.mean(axis=0), _LEAST_LEFT)
+        squares = np.sum(shares[np.flatnonzero(is_read.any(axis=1))] ** 2, axis=-1)
+        left_of = np.maximum(squares.mean(axis=0), _LEAST_LEFT)
     decay, share, variance = noise = _noise_of(residuals[..., 0], slopes, is_read, left_of)
     columns = np.concatenate([residuals, slopes], axis=-1)
     if shares is None:
@@ -104,13 +107,13 @@ def gain_beside_drift(
     else:
         white = _shared_innovations(columns, is_read, shares, noise)
     flat = white.reshape(-1, columns.shape[-1])
-    others = orthonormal(flat[:, 2:][:, ~own])
-    after_white, before_white, *_ = beside(others, flat).T
-    further = orthonormal(beside(others, flat[:, 2:][:, own]))
-    left = beside(further, after_white)
-    gain = float(before_white @ before_white) - float(left @ left)
+    basis = orthonormal(flat[:, 2:][:, ~own])
+    after_white, before_white, *_ = outside_span(basis, flat).T
+    further = orthonormal(outside_span(basis, flat[:, 2:][:, own]))
+    unexplained = outside_span(further, after_white)
+    gain = float(before_white @ before_white) - float(unexplained @ unexplained)
     # Readings of one row share the error of its pose: their sums tell the doubt (Liang and Zeger).
-    scores = np.sum((further * left[:, None]).reshape(*is_read.shape, -1), axis=1)
+    scores = np.sum((further * unexplained[:, None]).reshape(*is_read.shape, -1), axis=1)
     inflation = np.sum(scores**2) / max(further.shape[1], 1)
     return gain / max(float(inflation), 1.0)
 
@@ -121,10 +124,10 @@ def _shares_left(problem: Problem, model: Fit) -> FloatArray:
     What is unknown in a row takes up a part of the errors of its readings, another one in each
     pose: as if a sensor that drifts slowly were off by another amount in each.
     """
-    machine, known = problem.predict.machine, [setting.effect for setting in model.settings]
-    zeros = [e for zero in (winch_scale.ZEROS, tension_gain.ZEROS) for e in zero.on(machine)]
-    further = [e for e in zeros if e not in known]
-    effects = [*known, *further]
+    machine, fitted = problem.predict.machine, [setting.effect for setting in model.settings]
+    zeros = [e for zero in (LENGTH_OFFSET, TENSION_BIAS) for e in zero.on(machine)]
+    further = [e for e in zeros if e not in fitted]
+    effects = [*fitted, *further]
     at_zero = [e.neutral[p.name] for e in further for p in e.parameters]
     slopes = jacobian(problem, effects, np.concatenate([model.vector, at_zero]))
     places = {
@@ -147,17 +150,17 @@ def _shared_innovations(
     """
     decay, share, variance = noise
     stationary = share * variance
-    foretold, doubt = np.zeros(columns.shape[1:]), np.diag(stationary)
+    expected, doubt = np.zeros(columns.shape[1:]), np.diag(stationary)
     white = np.zeros_like(columns)
     for k, (row, read) in enumerate(zip(columns, is_read, strict=True)):
-        left, size, _ = np.linalg.svd(np.where(read[:, None], shares[k], 0.0))
-        basis = left[:, size > _LEAST_LEFT]
+        directions, size, _ = np.linalg.svd(np.where(read[:, None], shares[k], 0.0))
+        basis = directions[:, size > _LEAST_LEFT]
         mixing = basis.T @ np.where(read[:, None], shares[k], 0.0)
-        step = basis.T @ row - mixing @ foretold
+        step = basis.T @ row - mixing @ expected
         covariance = mixing @ (doubt + np.diag((1.0 - share) * variance)) @ mixing.T
         white[k, : len(step)] = np.linalg.solve(np.linalg.cholesky(covariance), step)
         weight = np.linalg.solve(covariance, mixing @ doubt).T
-        foretold = decay[:, None] * (foretold + weight @ step)
+        expected = decay[:, None] * (expected + weight @ step)
         doubt = decay[:, None] * (doubt - weight @ mixing @ doubt) * decay
         doubt += np.diag((1.0 - decay**2) * stationary)
     return white
@@ -220,11 +223,11 @@ def _innovations(
     decay, share : array (…, n_channels)
         Of noise of unit variance.
     """
-    foretold, doubt = np.zeros((*share.shape, columns.shape[-1])), share
+    expected, doubt = np.zeros((*share.shape, columns.shape[-1])), share
     for row, read in zip(columns, is_read, strict=True):
         variance = doubt + 1.0 - share
-        step = np.where(read[:, None], row - foretold, 0.0)
+        step = np.where(read[:, None], row - expected, 0.0)
         weight = np.where(read, doubt / variance, 0.0)
         yield step / np.sqrt(variance)[..., None], np.where(read, np.log(variance), 0.0)
-        foretold = decay[..., None] * (foretold + weight[..., None] * step)
+        expected = decay[..., None] * (expected + weight[..., None] * step)
         doubt = decay**2 * (1.0 - weight) * doubt + (1.0 - decay**2) * share

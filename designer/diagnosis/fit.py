@@ -1,4 +1,12 @@
-"""Robust least squares for the parameters of given effects."""
+"""Robust least squares for the parameters of given effects, and how sure their values are.
+
+Two things ask for care. The time from which an effect acts at once has no slope, and lies between
+two rows. And at the edge of what the cables hold readings change much faster than the pose: a taut
+cable's length changes by no more than the pose does, but near the edge a cable hangs slack, and its
+length tells the pose of the model a thousand times better than any camera tells the true one. A fit
+that took the poses for exact would be settled by that row alone. Deviations are therefore given as
+if, in such rows, the poses had the noise of a length.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +17,13 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.edge import steepness
-from designer.diagnosis.look_ahead import View
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import SIGNIFICANCE, score_covariances
-from designer.diagnosis.step_time import StepTime, step_time
-from designer.effects.effect import Effect, Setting, Values
+from designer.effects.effect import Effect, Setting, Values, frame_size_m
+from designer.effects.platform_loads import LEAST_ROWS
+from designer.statics.forward import moved_poses
 
-_STRAIGHT = 0.1
+_LINEARITY_RTOL = 0.1
 """Of a change, by how much another may miss what slopes foretell: steps with them still do good."""
 _JUMP = 1e3
 """Of the noise and of the median row's change: no slope, but another balance of a fitted pose."""
@@ -26,38 +33,22 @@ HUBER = 3.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fit:
-    """Effects with fitted parameters.
+    """Effects with fitted parameters."""
 
-    Parameters
-    ----------
-    settings : tuple of Setting
-        The effects in the order in which they act, with their values.
-    vector : array (n_parameters,)
-        All values in that order.
-    std : array (n_parameters,)
-        Standard deviations, scaled up where the residual exceeds the noise, or where readings of
-        one row, of neighbouring rows or of one block are alike.
-    loss : float
-        Robust sum of squares over the fitted rows, in units of noise.
-    n_data : int
-        Number of readings fitted, less those that internal forces took.
-    inflation : mapping of str to float
-        For each effect, by how much the readings that tell of it are fewer than they look, at
-        least 1: mean ratio of variances (Rao and Scott, Ann. Statist. 12, 1984).
-    wald : mapping of str to float
-        For each effect, how far all its values together are from doing nothing, squared, in units
-        of their covariance: the smallest over the estimates of it that ``std`` is the largest of.
-    covariance : array (n_parameters, n_parameters)
-        Of all values: correlations by least squares, with ``std``.
-    """
-
-    settings: tuple[Setting, ...]
-    vector: FloatArray
+    settings: tuple[Setting, ...]  #: the effects in the order in which they act, with their values
+    vector: FloatArray  #: (n_parameters,): all values in that order
+    #: (n_parameters,): standard deviations, scaled up where the residual exceeds the noise, or
+    #: where readings of one row, of neighbouring rows or of one block are alike
     std: FloatArray
-    loss: float
-    n_data: int
+    loss: float  #: robust sum of squares over the fitted rows, in units of noise
+    n_data: int  #: number of readings fitted, less those that internal forces took
+    #: for each effect, by how much the readings that tell of it are fewer than they look, at least
+    #: 1: mean ratio of variances (Rao and Scott, Ann. Statist. 12, 1984).
     inflation: Mapping[str, float] = field(default_factory=dict)
+    #: for each effect, how far all its values together are from doing nothing, squared, in units of
+    #: their covariance: the smallest over the estimates of it that ``std`` is the largest of
     wald: Mapping[str, float] = field(default_factory=dict)
+    #: (n_parameters, n_parameters): of all values: correlations by least squares, with ``std``
     covariance: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
 
     @property
@@ -150,22 +141,22 @@ def fit(
     if not effects:
         loss = float(huber(problem.misfit(())[is_used]).sum())
         return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(is_used))
-    known = {s.effect.key for s in start}
+    known_keys = {s.effect.key for s in start}
     several = [e for e in effects if e.starts or e.starts_from]  # valleys to start in
-    fresh = [e for e in several if anew or e.key not in known]
+    fresh = [e for e in several if anew or e.key not in known_keys]
     # Evaluations from anywhere, and from near the end.
-    turns = 80 if thorough or not start or (anew and fresh) else 12
+    iterations = 80 if thorough or not start or (anew and fresh) else 12
     valleys = _starts(problem, effects, start, fresh)
-    is_known = {effect.key for effect in fresh} <= known
-    near = [starting_vector(effects, start, {})] if is_known or not valleys else []
-    starts = [*valleys, *near]
+    is_known = {effect.key for effect in fresh} <= known_keys
+    present = [starting_vector(effects, start, {})] if is_known or not valleys else []
+    starts = [*valleys, *present]
     if anew or not start:  # the present values promise most, but may be in the wrong valley
         starts = [
             vector
-            for group in (valleys, near)
+            for group in (valleys, present)
             for vector in _promising(problem, effects, is_used, group)
         ]
-    fits = [_fit_from(problem, effects, is_used, v, turns, thorough=thorough) for v in starts]
+    fits = [_fit_from(problem, effects, is_used, v, iterations, thorough=thorough) for v in starts]
     return min(fits, key=lambda candidate: candidate.loss)
 
 
@@ -199,8 +190,8 @@ def _promising(
     """
     reached: dict[tuple[float, float], FloatArray] = {}
     for vector in starts:
-        promise, loss, there = _stepped(problem, effects, is_used, vector)
-        reached.setdefault((round(np.log(promise + 1.0), 2), round(np.log(loss + 1.0), 2)), there)
+        promise, loss, end = _stepped(problem, effects, is_used, vector)
+        reached.setdefault((round(np.log(promise + 1.0), 2), round(np.log(loss + 1.0), 2)), end)
     least = min((promise for promise, _ in reached), default=0.0)
     return [reached[key] for key in sorted(reached)[:2] if key[0] < least + 0.1]
 
@@ -215,13 +206,13 @@ def _stepped(
     for _ in range(8):
         slopes = jacobian(problem, effects, vector, nearly=True)[is_used]
         promised, step = _linear_step(residual, slopes)
-        there = np.clip(vector + step, low, high)
-        residual_there = problem.misfit(settings_at(effects, there))[is_used]
+        trial = np.clip(vector + step, low, high)
+        residual_there = problem.misfit(settings_at(effects, trial))[is_used]
         loss_there = float(huber(residual_there).sum())
         promise = min(promise, promised)
         if loss_there >= loss:
             break
-        vector, residual = there, residual_there
+        vector, residual = trial, residual_there
         is_over = loss_there > 0.8 * loss
         loss = loss_there
         if is_over:
@@ -244,7 +235,7 @@ def jacobian(
     )
 
 
-def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> FloatArray:
+def _slopes(problem: Problem, settings: Sequence[Setting], moving: Setting) -> FloatArray:
     """Return the slopes of the misfit in the parameters of one of the settings.
 
     A row that the model holds on one side only tells its slope there; one that it does not hold at
@@ -253,11 +244,11 @@ def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> Floa
     is_read = problem.measured.is_read
     predicted = problem.in_noise(settings)
     slopes = []
-    for p in own.effect.parameters:
+    for p in moving.effect.parameters:
         if p.is_step_time:
             slopes.append(np.where(is_read, 0.0, np.nan))
             continue
-        value = own.values[p.name]
+        value = moving.values[p.name]
         # So short that one side will do, and far above the solver's residual.
         step = 1e-3 * max(p.typical, 0.1 * abs(value - p.neutral))
         slope = np.full(is_read.shape, np.nan)
@@ -265,8 +256,8 @@ def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> Floa
             is_lost = np.isnan(slope) & is_read & ~np.isnan(predicted)
             if not is_lost.any():
                 break
-            there = replace(own, values={**own.values, p.name: moved})
-            settings_there = tuple(there if s is own else s for s in settings)
+            at_step = replace(moving, values={**moving.values, p.name: moved})
+            settings_there = tuple(at_step if s is moving else s for s in settings)
             change = problem.in_noise(settings_there) - predicted
             if problem.predict.row_unknowns:
                 size = np.nan_to_num(np.abs(change)).max(axis=1)
@@ -276,7 +267,23 @@ def _slopes(problem: Problem, settings: Sequence[Setting], own: Setting) -> Floa
     return np.stack(slopes, axis=-1)
 
 
-class Reach(NamedTuple):
+class StartingPoint(NamedTuple):
+    """An effect where a fit may start: its values, the residual (n,) there, and slopes (n, p)."""
+
+    setting: Setting
+    residual: FloatArray
+    slopes: FloatArray
+
+    def moved(self, step: FloatArray) -> Setting:
+        """Return the values after a step (p,), within bounds."""
+        values = {
+            p.name: float(np.clip(self.setting.values[p.name] + change, *p.bounds))
+            for p, change in zip(self.setting.effect.parameters, step, strict=True)
+        }
+        return Setting(self.setting.effect, values)
+
+
+class LinearTrial(NamedTuple):
     """The robust loss after one linear step, without one more effect in the model and with it.
 
     With it from the best of its starts, of which there are views.
@@ -284,7 +291,7 @@ class Reach(NamedTuple):
 
     without: float
     loss: float
-    views: tuple[View, ...] = ()
+    views: tuple[StartingPoint, ...] = ()
 
     @property
     def gain(self) -> float:
@@ -292,44 +299,36 @@ class Reach(NamedTuple):
         return self.without - self.loss
 
 
-def in_reach(
+def linear_trial(
     problem: Problem, effects: Sequence[Effect], rows: BoolArray, present: Fit, effect: Effect
-) -> Reach:
+) -> LinearTrial:
     """Return what one linear step leaves of the robust loss, with one more effect in the model.
 
     The step is from the present values of the others, and for the effect from where it does
     nothing, as a score test has it (Rao, Proc. Cambridge Philos. Soc. 44, 1948), or from where a
     fit would start: the best of these.
 
-    Parameters
-    ----------
-    problem, rows
-        As for `fit`.
-    effects : sequence of Effect
-        All of the model with the effect, in the order in which they act.
-    present : Fit
-        The model without it.
-    effect : Effect
-        The one that is added.
+    ``effects`` are all of the model with the added one, in the order in which they act, and
+    ``present`` is the model without it.
     """
     is_used = problem.used(rows)
     problem.predict.trust_as(present.settings, effects, problem.noise)
-    others = [s.effect for s in present.settings]
-    known = np.empty((int(is_used.sum()), 0))
-    if others:
-        known = jacobian(problem, others, present.vector, nearly=True)[is_used]
+    present_effects = [s.effect for s in present.settings]
+    known_slopes = np.empty((int(is_used.sum()), 0))
+    if present_effects:
+        known_slopes = jacobian(problem, present_effects, present.vector, nearly=True)[is_used]
     losses, views = [], []
     start = _starts(problem, effects, present.settings, [effect])
     start = start or [starting_vector(effects, present.settings, {})]
     for vector in (starting_vector(effects, present.settings, effect.neutral), *start):
         settings = settings_at(effects, vector)
-        (own,) = (s for s in settings if s.effect.key == effect.key)
-        slopes = _slopes(problem, settings, own)[is_used]
+        (added,) = (s for s in settings if s.effect.key == effect.key)
+        slopes = _slopes(problem, settings, added)[is_used]
         residual = problem.misfit(settings)[is_used]
-        losses.append(_linear_step(residual, np.hstack([known, slopes]))[0])
-        views.append(View(own, residual, slopes))
+        losses.append(_linear_step(residual, np.hstack([known_slopes, slopes]))[0])
+        views.append(StartingPoint(added, residual, slopes))
     residual = problem.misfit(present.settings)[is_used]
-    return Reach(_linear_step(residual, known)[0], min(losses), tuple(views))
+    return LinearTrial(_linear_step(residual, known_slopes)[0], min(losses), tuple(views))
 
 
 def _linear_step(residual: FloatArray, slopes: FloatArray) -> tuple[float, FloatArray]:
@@ -353,33 +352,35 @@ def _fit_from(
     effects: Sequence[Effect],
     mask: BoolArray,
     start: FloatArray,
-    turns: int,
+    iterations: int,
     *,
     thorough: bool,
 ) -> Fit:
     from scipy.optimize import least_squares
 
-    # Relative: the final model is told, a trial is only compared with others.
+    # Relative: the final model is reported, a trial is only compared with others.
     tolerance = 1e-8 if thorough else 1e-5
     parameters = [p for effect in effects for p in effect.parameters]
     low, high = np.array([p.bounds for p in parameters]).T
     inside = np.clip(start, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
-    taken: tuple[FloatArray, FloatArray, FloatArray] | None = None
+    cached: tuple[FloatArray, FloatArray, FloatArray] | None = None
 
     def misfit(vector: FloatArray) -> FloatArray:
         return problem.misfit(settings_at(effects, vector))[mask]
 
     def slopes_at(vector: FloatArray) -> FloatArray:
         """Return slopes; those taken before, as long as the misfit follows them."""
-        nonlocal taken
+        nonlocal cached
         residual = misfit(vector)
-        if taken is not None and not thorough:
-            place, before, slopes = taken
-            foretold = slopes @ (vector - place)
-            if np.linalg.norm(residual - before - foretold) < _STRAIGHT * np.linalg.norm(foretold):
+        if cached is not None and not thorough:
+            place, before, slopes = cached
+            linear_change = slopes @ (vector - place)
+            if np.linalg.norm(residual - before - linear_change) < _LINEARITY_RTOL * np.linalg.norm(
+                linear_change
+            ):
                 return slopes
         slopes = jacobian(problem, effects, vector, nearly=not thorough)[mask]
-        taken = vector.copy(), residual, slopes
+        cached = vector.copy(), residual, slopes
         return slopes
 
     for _ in range(5):  # until distrust of readings and times of steps agree with what is left
@@ -393,7 +394,7 @@ def _fit_from(
             f_scale=HUBER,
             xtol=tolerance,
             ftol=tolerance,
-            max_nfev=turns,
+            max_nfev=iterations,
         )
         settings = settings_at(effects, answer.x)
         inside = answer.x.copy()
@@ -421,6 +422,42 @@ def _fit_from(
     return Fit(settings, answer.x, std, loss, count, inflation, wald, covariance)
 
 
+class StepTime(NamedTuple):
+    """A time [s] and its standard deviation [s]."""
+
+    time_s: float
+    std_s: float
+
+
+def step_time(
+    time_s: FloatArray, before: FloatArray, after: FloatArray, variance: float
+) -> StepTime | None:
+    r"""Return the time at which a step leaves least loss; None where too few rows show it.
+
+    With a step between two rows the loss is Σ before up to the one and Σ after from the other; the
+    time is midway. Within a gap between rows every time is as probable, and one gap against another
+    as exp(-loss / 2 variance) times its width (Hinkley, Biometrika 57 (1970) 1), from which the
+    deviation follows.
+
+    Losses are of each row (n_rows,) without the effect and with it; rows in which these are equal
+    tell nothing.
+    """
+    rows = np.flatnonzero(before != after)
+    if len(rows) < 2 * LEAST_ROWS:
+        return None
+    rows = rows[np.argsort(time_s[rows], kind="stable")]
+    last = np.arange(LEAST_ROWS - 1, len(rows) - LEAST_ROWS)  # before the step
+    starts, ends = time_s[rows[last]], time_s[rows[last + 1]]
+    width, middle = ends - starts, 0.5 * (starts + ends)
+    if not width.any():
+        return None
+    loss = np.where(width > 0.0, np.cumsum((before - after)[rows])[last], np.inf)
+    best = int(np.argmin(loss))
+    weight = width * np.exp(-0.5 * (loss - loss[best]) / variance)
+    square = weight @ ((middle - middle[best]) ** 2 + width**2 / 12.0) / weight.sum()
+    return StepTime(float(middle[best]), float(np.sqrt(square)))
+
+
 def _step_times(
     problem: Problem, settings: Sequence[Setting], mask: BoolArray, variance: float = 1.0
 ) -> dict[int, StepTime]:
@@ -432,8 +469,8 @@ def _step_times(
                 continue
             losses = []
             for value in p.bounds:  # with the step in all rows, then in none
-                there = replace(setting, values={**setting.values, p.name: value})
-                misfit = problem.misfit(tuple(there if s is setting else s for s in settings))
+                at_bound = replace(setting, values={**setting.values, p.name: value})
+                misfit = problem.misfit(tuple(at_bound if s is setting else s for s in settings))
                 losses.append(huber(np.where(mask, misfit, np.nan)).sum(axis=1))
             assert problem.measured.time_s is not None
             best = step_time(problem.measured.time_s, losses[1], losses[0], variance)
@@ -470,7 +507,40 @@ def _doubts(
         ratios = [np.sum(inverse * covariance[columns, columns]) / seen for covariance in clustered]
         inflation[setting.effect.key] = float(max(1.0, *ratios))
     std = np.where(is_unseen, np.inf, np.sqrt(np.maximum(spread, 0.0)) / scale)
-    own = np.sqrt(np.maximum(np.diag(bread), 1e-300))
+    deviation = np.sqrt(np.maximum(np.diag(bread), 1e-300))
     with np.errstate(invalid="ignore"):  # what has no slope has no covariance
-        covariance = bread / np.outer(own, own) * np.outer(std, std)
+        covariance = bread / np.outer(deviation, deviation) * np.outer(std, std)
     return std, inflation, wald, covariance
+
+
+_STEEP = 5.0
+"""Change of a length over that of the pose from which on a row is at the edge: a taut cable's is at
+most 1, and over pulleys and with sag hardly more."""
+_POSE_STEP = 1e-7
+"""Over the frame's size: far above the solver's residual, and short against the way to the edge."""
+
+
+def steepness(problem: Problem, settings: Sequence[Setting]) -> FloatArray:
+    """Return by how much more than noise each reading is in doubt (n_rows, n_readings).
+
+    That is √(1 + |∂r/∂pose|²) with the pose in units of a length's noise; 1 in rows that are not at
+    the edge, and of robots whose internal forces or poses are taken from the readings themselves.
+    """
+    predict, measured = problem.predict, problem.measured
+    robot, n_cables = predict.machine.robot, measured.length_m.shape[1]
+    slopes = np.zeros((*measured.readings.shape, robot.degrees_of_freedom))
+    if predict.row_unknowns:
+        return np.ones(problem.measured.is_read.shape)
+    predicted = problem.predicted(settings).stacked
+    step_m = _POSE_STEP * frame_size_m(predict.machine)
+    for k in range(robot.degrees_of_freedom):
+        steps = np.zeros((measured.n_rows, robot.degrees_of_freedom))
+        for side in (step_m, -step_m):  # the larger: the model may hold a row on one side only
+            steps[:, k] = side
+            at_step = replace(measured, poses=moved_poses(robot, measured.poses, steps))
+            change = predict.at(at_step)(settings, problem.noise).stacked - predicted
+            slope = np.nan_to_num(change / side)
+            slopes[..., k] = np.where(np.abs(slope) > np.abs(slopes[..., k]), slope, slopes[..., k])
+    steepest = np.max(np.abs(slopes[:, :n_cables]), axis=(1, 2))
+    in_noise = np.linalg.norm(slopes, axis=-1) * problem.noise.length_m / problem.sigma
+    return np.where(steepest[:, None] > _STEEP, np.sqrt(1.0 + in_noise**2), 1.0)

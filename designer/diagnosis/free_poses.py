@@ -1,10 +1,16 @@
-r"""Poses that nobody measured, taken row by row from what was read.
+"""Poses that nobody measured, taken row by row from what was read.
 
 Lengths and tensions of all cables are twice as many readings as a row's balance has unknowns: its
 pose, and one internal force for each cable to spare, together as many as cables. For any effects
 each row is put where it suits its own readings best; what is left then is a residual of those
 effects alone (variable projection: Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973). The work is
 linear in the rows.
+
+Of exit points that were not measured either, nothing tells where their frame is. All exit points
+and all poses may move together, as a rigid body, and no length changes; where the scale of every
+winch is unknown as well, they may grow. Coordinates of poses that were measured in part exclude
+what would change them. As many coordinates of exit points stay as drawn as there are such motions
+left; what is fitted is reported in that frame.
 """
 
 from __future__ import annotations
@@ -13,6 +19,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import HUBER, huber, jacobian, starting_vector
@@ -22,22 +29,22 @@ from designer.effects.effect import Effect, Readings, Setting, frame_size_m
 from designer.model.machine import Machine
 from designer.model.measured_data import EVEN, Measured, Noise
 from designer.model.region import Region
-from designer.model.robot import Poses
+from designer.model.robot import Poses, Robot
 from designer.statics.forward import moved_poses
 from designer.statics.geometry import cable_geometry
 
-TAKEN_UP = "taken up by the estimated poses"
-"""Why an effect cannot be told."""
+ABSORBED = "taken up by the estimated poses"
+"""Why an effect cannot be identified."""
 _CANDIDATES = 4000
 """Places to start from: neighbours are a sixteenth of the region's side apart."""
-_STEP = 1e-6
+_POSE_STEP = 1e-6
 """Over the frame's size: slopes to six digits, as the catenaries have ten."""
-_FAR = 4.0
+_FAR_LOSS = 4.0
 """Over the least loss of a set of effects: where a start is not near what was the best."""
-_STILL = 5e-2
+_TOLERANCE = 5e-2
 """Of the noise, or of what is left where that is more: the rest of the way is straight, to a small
 share of this."""
-_EXACT = 1e-7
+_WEIGHT_TOLERANCE = 1e-7
 """Of the noise: what weights may still change, as slopes over short steps show more."""
 _UNHELD = 1e9
 """What is left of a reading where the model cannot hold the pose: worse than any error."""
@@ -102,13 +109,15 @@ class FreePredictor(Predictor):
         poses, slopes = start if start else (self.measured.poses, None)
         answer, residual = self._left_at(poses, settings, noise)
         least, best_poses = self._best.get(kind, (np.inf, poses))
-        if _loss(residual).sum() > _FAR * least:  # from far away a row may stay in another balance
-            there = self._left_at(best_poses, settings, noise)[1]
-            poses, slopes = _either(_loss(there) < _loss(residual), best_poses, poses), None
+        if (
+            _loss(residual).sum() > _FAR_LOSS * least
+        ):  # from far away a row may stay in another balance
+            at_best = self._left_at(best_poses, settings, noise)[1]
+            poses, slopes = _select(_loss(at_best) < _loss(residual), best_poses, poses), None
             answer, residual = self._left_at(poses, settings, noise)
         is_lost = np.asarray((np.abs(residual) >= _UNHELD).any(axis=1))
         if is_lost.any():  # without a slope it would never come back
-            poses, slopes = _either(is_lost, self._first, poses), None
+            poses, slopes = _select(is_lost, self._first, poses), None
             answer, residual = self._left_at(poses, settings, noise)
         share = np.ones(len(residual))
         for _ in range(12):  # turns at most
@@ -117,7 +126,7 @@ class FreePredictor(Predictor):
             for _ in range(4):  # steps with these slopes: near the end two will do
                 step = _step(slopes, residual)
                 rest = np.einsum("rcp,rp->rc", slopes, step)
-                still = _STILL * np.maximum(1.0, np.abs(residual).max(axis=1))
+                still = _TOLERANCE * np.maximum(1.0, np.abs(residual).max(axis=1))
                 if np.all(np.abs(rest).max(axis=1) < still):
                     self._near[kind] = poses, slopes
                     if _loss(residual).sum() < least:
@@ -127,7 +136,7 @@ class FreePredictor(Predictor):
                 trial = moved_poses(self.machine.robot, poses, share[:, None] * step)
                 answer, residual_trial = self._left_at(trial, settings, noise)
                 closer = _loss(residual_trial) <= _loss(residual)
-                poses = _either(closer, trial, poses)
+                poses = _select(closer, trial, poses)
                 residual = np.where(closer[:, None], residual_trial, residual)
                 share = np.where(closer, np.minimum(1.0, 4.0 * share), 0.25 * share)
                 if not closer.all():  # slopes from elsewhere may lead the wrong way
@@ -171,7 +180,7 @@ class FreePredictor(Predictor):
     ) -> FloatArray:
         """Return how much less is left for a step of each degree of freedom (rows, …, dof)."""
         robot = self.machine.robot
-        step_m = _STEP * frame_size_m(self.machine)
+        step_m = _POSE_STEP * frame_size_m(self.machine)
         slopes = np.empty((*residual.shape, robot.degrees_of_freedom))
         for k in range(robot.degrees_of_freedom):
             step = np.zeros((len(residual), robot.degrees_of_freedom))
@@ -188,14 +197,7 @@ def first_poses(machine: Machine, measured: Measured, region: Region) -> Poses:
 
     The platform is level there. Lengths and tensions count over their scatter in the region.
 
-    Parameters
-    ----------
-    machine : Machine
-        With the declared effects.
-    measured : Measured
-        Rows without poses.
-    region : Region
-        Where the robot works.
+    The machine has the declared effects.
     """
     robot = machine.robot
     places = np.concatenate(list(region.samples_m(_CANDIDATES, "low_discrepancy", 0)))
@@ -219,18 +221,13 @@ def first_poses(machine: Machine, measured: Measured, region: Region) -> Poses:
     return poses if measured.coordinates is None else measured.coordinates.put_into(poses)
 
 
-def taken_up(
+def absorbed_by_poses(
     problem: Problem, effects: Sequence[Effect], unconditional: Sequence[Effect], rows: BoolArray
 ) -> list[tuple[str, str]]:
     """Return effects that poses take up, each with the reason.
 
     Such an effect, even as large as an engineer would believe, would leave less in the readings
     than a search takes for chance.
-
-    Parameters
-    ----------
-    problem, effects, unconditional, rows
-        As for `designer.diagnosis.search.Searcher`.
     """
     from scipy.stats import chi2
 
@@ -245,7 +242,7 @@ def taken_up(
         gain = float(np.max(np.sum(effect_slopes**2, axis=(0, 1)) * np.square(largest)))
         if chi2.sf(gain, len(effect.parameters)) * len(effects) > SIGNIFICANCE:
             size = f"{np.sqrt(gain):.2g} standard deviations in all at its largest plausible value"
-            answer.append((effect.key, f"{TAKEN_UP}: {size}"))
+            answer.append((effect.key, f"{ABSORBED}: {size}"))
     return answer
 
 
@@ -266,7 +263,9 @@ def _step(slopes: FloatArray, residual: FloatArray) -> FloatArray:
         ridge = least[:, None, None] * np.eye(square.shape[-1])
         step = np.asarray(np.linalg.solve(square + ridge, pull[..., None])[..., 0])
         before, rest = rest, residual - np.einsum("rcp,rp->rc", slopes, step)
-        if not (is_held & (np.abs(rest - before) > _EXACT) & (np.abs(rest) > HUBER)).any():
+        if not (
+            is_held & (np.abs(rest - before) > _WEIGHT_TOLERANCE) & (np.abs(rest) > HUBER)
+        ).any():
             break
     return step
 
@@ -275,9 +274,130 @@ def _loss(values: FloatArray) -> FloatArray:
     return np.asarray(huber(values).sum(axis=1))
 
 
-def _either(mask: BoolArray, poses: Poses, alternative: Poses) -> Poses:
+def _select(mask: BoolArray, poses: Poses, alternative: Poses) -> Poses:
     """Return the poses of one where ``mask`` (n_rows,), else of the other."""
     rotation = poses.rotation
     if rotation.ndim > 2:
         rotation = np.where(mask[:, None, None], rotation, alternative.rotation)
     return Poses(np.where(mask[:, None], poses.position_m, alternative.position_m), rotation)
+
+
+# The frame of exit points that were not measured.
+
+_AXES = ("x_m", "y_m", "z_m")
+_MOTIONS = ("x", "y", "z", "the turn about x", "the turn about y", "the turn about z", "the scale")
+_RANK_RTOL = 1e-6
+"""Of a motion that is as large as the frame: rounding."""
+_MOTION_STEP, _LEAST_CHANGE = 1e-4, 1e-3
+"""Of a motion [m], for its slopes; and what of it changes no coordinate."""
+
+
+def with_frame_held(
+    given: Sequence[Effect], robot: Robot, measured: Measured
+) -> tuple[tuple[Effect, ...], tuple[str, ...]]:
+    """Return what is unknown less the coordinates that hold the frame, and a note that names them.
+
+    The rows have no poses, or poses in part; where they roughly are is known.
+    """
+    unknown = {e.cable: {p.name for p in e.parameters} for e in given if e.id == "anchor_offset"}
+    if not unknown:
+        return tuple(given), ()
+    free = np.array([[axis in unknown.get(k, ()) for axis in _AXES] for k in _cables(robot)])
+    has_tensions = bool(np.isfinite(measured.tension_N).any())
+    scales = {e.cable for e in given if e.id == "winch_scale"}
+    may_grow = scales >= set(_cables(robot)) or any(e.id == "drum_scale" for e in given)
+    motions = _motions_left(robot, measured, free, is_level=has_tensions, may_grow=may_grow)
+    held = _held_coordinates(robot, motions)
+    across = {axis for axis, share in zip(_AXES, np.abs(robot.level[1]), strict=True) if share == 1}
+    still = {(cable, axis) for cable in unknown for axis in across if robot.is_planar} | set(held)
+    effects = [
+        replace(e, parameters=tuple(p for p in e.parameters if (e.cable, p.name) not in still))
+        if e.id == "anchor_offset" and e.cable is not None
+        else e
+        for e in given
+    ]
+    names = [f"{axis[0]} of exit point {cable}" for cable, axis in held]
+    shares = np.sum(motions**2, axis=1)
+    unread = [name for name, share in zip(_MOTIONS, shares, strict=True) if share > 1e-6]
+    note = (
+        f"the frame is held by {', '.join(names)}, which stay as drawn: nothing read tells "
+        f"{', '.join(unread)}"
+    )
+    return tuple(effect for effect in effects if effect.parameters), (note,) * bool(held)
+
+
+def _motions(robot: Robot, points: FloatArray) -> FloatArray:
+    """Return how points (n, 3) [m] move by `_MOTIONS` about the exit points' middle (7, n, 3).
+
+    By a metre; turns and growth as far, over the size of the frame.
+    """
+    exits = robot.exit_points_m
+    from_middle = (points - exits.mean(axis=0)) / np.ptp(exits, axis=0).max()
+    turned = np.cross(np.eye(3)[:, None], from_middle)
+    shifted = np.broadcast_to(np.eye(3)[:, None], turned.shape)
+    return np.concatenate([shifted, turned, from_middle[None]])
+
+
+def _changes_read(robot: Robot, measured: Measured) -> FloatArray:
+    """Return by how much each motion changes the coordinates that were measured (n_rows 6, 7)."""
+    if measured.coordinates is None:
+        return np.empty((0, 7))
+    poses = measured.poses
+    steps_m = _motions(robot, poses.position_m)
+    turns = np.zeros((7, 3))
+    turns[3:6] = np.eye(3) / np.ptp(robot.exit_points_m, axis=0).max()
+    before = measured.coordinates.off(poses)
+    columns = []
+    for step_m, turn in zip(steps_m, _MOTION_STEP * turns, strict=True):
+        rotation = poses.rotation
+        if rotation.ndim > 2:
+            rotation = Rotation.from_rotvec(turn).as_matrix() @ rotation
+        moved = Poses(poses.position_m + _MOTION_STEP * step_m, rotation)
+        columns.append((measured.coordinates.off(moved) - before) * measured.coordinates.noise)
+    return np.reshape(columns, (7, -1)).T / _MOTION_STEP
+
+
+def _motions_left(
+    robot: Robot, measured: Measured, free: BoolArray, *, is_level: bool, may_grow: bool
+) -> FloatArray:
+    """Return an orthonormal basis of the motions that change no reading (7, n)."""
+    from scipy.linalg import null_space
+
+    motions = _motions(robot, robot.exit_points_m).reshape(7, -1).T
+    changes = _changes_read(robot, measured)
+    # What poses that are all about alike would tell is lost in the noise.
+    impossible = [motions[~free.ravel()], np.where(np.abs(changes) < _LEAST_CHANGE, 0.0, changes)]
+    level = robot.level
+    if robot.is_planar:
+        impossible += [_rows(level[1], 0), _rows(level[0], 3), _rows(level[2], 3)]
+    if is_level:  # the vertical shows in the tensions
+        impossible += [_rows(level[0], 3), _rows(level[1], 3)]
+    if not may_grow:
+        impossible.append(_rows(np.ones(1), 6))
+    return np.asarray(null_space(np.concatenate(impossible), rcond=_RANK_RTOL))
+
+
+def _held_coordinates(robot: Robot, unread: FloatArray) -> list[tuple[int, str]]:
+    """Return coordinates of exit points, as many as motions that change no reading.
+
+    The ones that each motion moves most, by a QR decomposition with pivoting.
+    """
+    from scipy.linalg import qr
+
+    if unread.size == 0:
+        return []
+    motions = _motions(robot, robot.exit_points_m).reshape(7, -1).T
+    order = qr((motions @ unread).T, mode="r", pivoting=True)[1]
+    cables, axes = np.divmod(np.sort(order[: unread.shape[1]]), 3)
+    return [(int(cable) + 1, _AXES[axis]) for cable, axis in zip(cables, axes, strict=True)]
+
+
+def _rows(values: FloatArray, first: int) -> FloatArray:
+    """Return one row of conditions on the seven motions."""
+    row = np.zeros((1, 7))
+    row[0, first : first + len(values)] = values
+    return row
+
+
+def _cables(robot: Robot) -> range:
+    return range(1, robot.n_cables + 1)

@@ -16,36 +16,29 @@ from functools import cached_property
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.errors_of import thirds_of
-from designer.diagnosis.events import find_common, find_events, find_spreading, find_swapped
+from designer.diagnosis.accuracy import thirds_of
 from designer.diagnosis.fit import Fit, jacobian, with_places
-from designer.diagnosis.mirrored import find_mirrored
 from designer.diagnosis.problem import Problem
-from designer.diagnosis.result import MOST_SCATTER, Reason, Withdrawn
+from designer.diagnosis.result import MOST_SCATTER, Reason, RejectedEffect
 from designer.diagnosis.search import Searcher, Step, without
 from designer.diagnosis.statistics import (
     SIGNIFICANCE,
-    beside,
     block_of,
     orthonormal,
+    outside_span,
     rms,
     without_outliers,
 )
-from designer.diagnosis.structure import (
-    Event,
-    Structure,
-    covariates_of,
-    find_structure,
-)
-from designer.effects.effect import Effect, Readings, Setting
-from designer.effects.platform_force import EFFECT as FORCE
+from designer.diagnosis.structure import Structure, covariates_of, find_mistake, structure_left
+from designer.effects.effect import Effect, Readings
+from designer.effects.platform_loads import PLATFORM_FORCE
 from designer.progress import Pace
 
 _MOST_CARRIERS = 4
 """Covariates that are tried: weaker ones go with these."""
 
 
-def drifting(outcome: Outcome) -> Withdrawn | None:
+def _drifting(outcome: Outcome) -> RejectedEffect | None:
     r"""Return the found effect that drifts most with a covariate that the residual goes with.
 
     Each effect is allowed to change in proportion to the covariate, all others being fitted anew.
@@ -64,11 +57,11 @@ def drifting(outcome: Outcome) -> Withdrawn | None:
     is_used = problem.used(rows)
     slopes = jacobian(problem, [s.effect for s in model.settings], model.vector)
     spanned = orthonormal(slopes[is_used])
-    remainder = beside(spanned, residual[is_used])
+    remainder = outside_span(spanned, residual[is_used])
     unexplained = model.loss - model.n_data
     predicted = problem.surroundings(model.settings)
     covariates = covariates_of(problem.measured, predicted)
-    worst: Withdrawn | None = None
+    worst: RejectedEffect | None = None
     for setting, columns in with_places(model.settings):
         if setting.effect.key not in keys:
             continue
@@ -76,10 +69,10 @@ def drifting(outcome: Outcome) -> Withdrawn | None:
         rest = [s for s in model.settings if s is not setting]
         change = problem.misfit(rest)[is_used] - unclipped[is_used]
         other_slopes = orthonormal(np.delete(slopes, columns, axis=-1)[is_used])
-        size = np.sqrt(max(np.sum(beside(other_slopes, change) ** 2), model.variance))
+        size = np.sqrt(max(np.sum(outside_span(other_slopes, change) ** 2), model.variance))
         for name, z in _weights(structure, covariates, predicted, rows):
             moved = (slopes[..., columns] * z[..., None])[is_used]
-            further = orthonormal(beside(spanned, moved))
+            further = orthonormal(outside_span(spanned, moved))
             gain = float(np.sum((further.T @ remainder) ** 2))
             # With six covariates for each of up to five effects, the chance of any is below 0.001.
             drift = gain if chi2.sf(gain / model.variance, moved.shape[1]) < 1e-5 else 0.0
@@ -89,7 +82,7 @@ def drifting(outcome: Outcome) -> Withdrawn | None:
             # it explains most of what is left.
             least = 0.05 if drift > 0.5 * unexplained > 0.0 else 0.2
             if variation > max(least, worst.variation if worst else 0.0):
-                worst = Withdrawn(setting.effect.key, name, variation)
+                worst = RejectedEffect(setting.effect.key, name, variation)
     return worst
 
 
@@ -132,33 +125,15 @@ _HARM = -0.1
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """A search, and what of it holds.
+    """A search, and what of it holds."""
 
-    Parameters
-    ----------
-    searcher : Searcher
-        Knows no effect that was withdrawn while it searched.
-    problem : Problem
-        What the tests may see: what was searched, or all readings.
-    rows : array (n_rows,) of bool
-        Rows in which structure is tested.
-    steps : tuple of Step
-        The search, round by round.
-    fit : Fit
-        Joint fit of the effects that hold.
-    found : tuple of Effect
-        Those, without what was unknown from the start.
-    withdrawn : tuple of Withdrawn
-        What was found and does not hold.
-    """
-
-    searcher: Searcher
-    problem: Problem
-    rows: BoolArray
-    steps: tuple[Step, ...]
-    fit: Fit
-    found: tuple[Effect, ...]
-    withdrawn: tuple[Withdrawn, ...] = ()
+    searcher: Searcher  #: knows no effect that was withdrawn while it searched
+    problem: Problem  #: what the tests may see: what was searched, or all readings
+    rows: BoolArray  #: (n_rows,): rows in which structure is tested
+    steps: tuple[Step, ...]  #: the search, round by round
+    fit: Fit  #: joint fit of the effects that hold
+    found: tuple[Effect, ...]  #: those, without what was unknown from the start
+    withdrawn: tuple[RejectedEffect, ...] = ()  #: what was found and does not hold
 
     @cached_property
     def structure(self) -> Structure:
@@ -170,7 +145,7 @@ class Outcome:
         return self.searcher.fit(without(self.found, effect.key), self.fit, thorough=True)
 
     def holding(
-        self, tests: Sequence[Callable[[Outcome], Withdrawn | None]], progress: Pace
+        self, tests: Sequence[Callable[[Outcome], RejectedEffect | None]], progress: Pace
     ) -> Outcome:
         """Withdraw what the first test objects to, fit the rest anew, until all are content.
 
@@ -213,7 +188,7 @@ def search_and_hold(
     """
     searcher = Searcher(problem, candidates, effects, rows, progress)
     unsearched = searcher.fit([], thorough=True)
-    if _mistaken(problem, unsearched.settings, rows):
+    if find_mistake(problem, unsearched.settings, rows):
         return Outcome(searcher, problem, rows, (), unsearched, ())
     steps, model, effects_found = searcher.run()
     # The best of what would still earn its place, but with values that nobody would believe; and of
@@ -221,9 +196,11 @@ def search_and_hold(
     last = [t for t in steps[-1].trials if t.effect not in effects_found] if steps else []
     good = [t for t in last if t.earns_its_place]
     wild = [gone for t in good if (gone := implausible(t.fit, [t.effect]))][:1]
-    drift = [Withdrawn(t.effect.key, reason=Reason.READINGS_DRIFT) for t in last if t.is_drift][:1]
+    drift = [
+        RejectedEffect(t.effect.key, reason=Reason.READINGS_DRIFT) for t in last if t.is_drift
+    ][:1]
     outcome = Outcome(searcher, problem, rows, steps, model, effects_found, (*wild, *drift))
-    outcome = outcome.holding((_implausible, _bent), progress)
+    outcome = outcome.holding((_implausible, _overfitted), progress)
     rest = without(candidates, *(withdrawal.effect for withdrawal in outcome.withdrawn))
     return replace(outcome, searcher=replace(searcher, candidates=rest))
 
@@ -235,25 +212,13 @@ def keep_what_helps(
 
     Nor may it make one kind of reading worse there, whatever it does for the other.
 
-    Parameters
-    ----------
-    outcome : Outcome
-        Of a search to which the readings of held-out rows were not shown.
-    problem : Problem
-        The same problem with all readings.
-    heldout : array (n_rows,) of bool
-        The rows to predict.
-
-    Returns
-    -------
-    Outcome
-        With what is kept; its structure is that of all rows.
-    dict of str to Gain
-        Gain of each effect that is kept.
+    The search of the outcome was not shown the readings of held-out rows (n_rows,); ``problem`` has
+    all readings. Returns what is kept, with the structure of all rows, and the gain of each effect
+    that is kept.
     """
     gains: dict[str, Gain] = {}
 
-    def unseen(outcome: Outcome) -> Withdrawn | None:
+    def unseen(outcome: Outcome) -> RejectedEffect | None:
         gains.clear()
         residual = problem.residual(outcome.fit.settings)[heldout]
         harm = {}
@@ -267,15 +232,15 @@ def keep_what_helps(
         worst = min(harm, key=harm.__getitem__, default="")
         if worst and harm[worst] < _HARM:
             detail = f"their mean square grows by {-harm[worst]:.0%}"
-            return Withdrawn(worst, reason=Reason.WORSE, detail=detail)
+            return RejectedEffect(worst, reason=Reason.WORSE, detail=detail)
         if all(gain.is_clear for gain in gains.values()):
             return None
         least = min(gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std)
         gain = gains[least]
-        return Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
+        return RejectedEffect(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
 
-    def bent_since(outcome: Outcome) -> Withdrawn | None:
-        return _bent(outcome) if len(outcome.withdrawn) > n_withdrawn else None
+    def bent_since(outcome: Outcome) -> RejectedEffect | None:
+        return _overfitted(outcome) if len(outcome.withdrawn) > n_withdrawn else None
 
     n_withdrawn = len(outcome.withdrawn)
     outcome = replace(outcome, problem=problem, rows=np.ones_like(heldout))
@@ -283,43 +248,11 @@ def keep_what_helps(
     return outcome.holding(tests, progress), gains
 
 
-def structure_left(problem: Problem, settings: Sequence[Setting], rows: BoolArray) -> Structure:
-    """Test what a model leaves of the readings of some rows (n_rows,)."""
-    everywhere = covariates_of(problem.measured, problem.surroundings(settings))
-    covariates = {name: column[rows] for name, column in everywhere.items()}
-    residual, predicted = _residual_and_predicted(problem, settings, rows)
-    numbers = problem.measured.row_numbers[rows]
-    structure = find_structure(residual, covariates, settled=problem.measured.settled)
-    mistaken = _mistaken(problem, settings, rows)
-    common = find_common(residual, covariates, numbers)
-    lengths_m = problem.surroundings(settings).length_m[rows]
-    events = find_events(residual, predicted, lengths_m, structure, numbers)
-    named = [mistaken] if mistaken else [*events, common]
-    if not (any(named) or structure.present):
-        named = [find_spreading(residual)]
-    return replace(structure, events=tuple(event for event in named if event))
-
-
-def _mistaken(problem: Problem, settings: Sequence[Setting], rows: BoolArray) -> Event | None:
-    """Return a mirrored frame or exchanged plugs; a frame explains all readings, plugs some."""
-    readings = _residual_and_predicted(problem, settings, rows)
-    numbers = problem.measured.row_numbers[rows]
-    return find_mirrored(problem, settings, rows) or find_swapped(*readings, numbers)
-
-
-def _residual_and_predicted(
-    problem: Problem, settings: Sequence[Setting], rows: BoolArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return residual and prediction of some rows (…, 2 n_cables), both in units of noise."""
-    in_noise = problem.predicted(settings).stacked / problem.sigma
-    return problem.residual(settings)[rows], in_noise[rows]
-
-
-def _implausible(outcome: Outcome) -> Withdrawn | None:
+def _implausible(outcome: Outcome) -> RejectedEffect | None:
     return implausible(outcome.fit, outcome.found)
 
 
-def _bent(outcome: Outcome) -> Withdrawn | None:
+def _overfitted(outcome: Outcome) -> RejectedEffect | None:
     """Return the found effect that is most likely bent to fit what else is left; None for none."""
     structure, model = outcome.structure, outcome.fit
     if not outcome.found or not (structure.events or structure.may_bend):
@@ -327,30 +260,32 @@ def _bent(outcome: Outcome) -> Withdrawn | None:
     losses = {effect.key: outcome.fit_without(effect).loss for effect in outcome.found}
     least = min(losses, key=losses.__getitem__)
     if losses[least] - model.loss < _SMALL * (model.loss - model.n_data):
-        return Withdrawn(least, reason=Reason.SMALL)
-    return drifting(outcome)
+        return RejectedEffect(least, reason=Reason.SMALL)
+    return _drifting(outcome)
 
 
-def _unsteady(outcome: Outcome) -> Withdrawn | None:
+def _unsteady(outcome: Outcome) -> RejectedEffect | None:
     """Return a tilt, if what is left scatters more as the rows go on: a wind does, no base."""
-    withdrawn = [each.effect for each in outcome.withdrawn]
-    force = tuple(e for e in without(outcome.searcher.candidates, *withdrawn) if e.id == FORCE.id)
+    withdrawn = [rejected.effect for rejected in outcome.withdrawn]
+    force = tuple(
+        e for e in without(outcome.searcher.candidates, *withdrawn) if e.id == PLATFORM_FORCE.id
+    )
     is_found = "base_tilt" in [effect.key for effect in outcome.found]
     is_unsteady = any(event.place == "scatter" for event in outcome.structure.events)
     if not (is_found and is_unsteady and force):
         return None
-    return Withdrawn("base_tilt", reason=Reason.UNSTEADY, instead=force)
+    return RejectedEffect("base_tilt", reason=Reason.UNSTEADY, instead=force)
 
 
-def _no_step(outcome: Outcome) -> Withdrawn | None:
+def _no_step(outcome: Outcome) -> RejectedEffect | None:
     """Return what begins at a time, if what is left goes with time all the same."""
     steps = [e.key for e in outcome.found if e.starts_from is not None and "time" in e.needs]
     if steps and any(carrier.is_order for carrier in outcome.structure.present):
-        return Withdrawn(steps[0], reason=Reason.NO_STEP)
+        return RejectedEffect(steps[0], reason=Reason.NO_STEP)
     return None
 
 
-def implausible(model: Fit, effects: Sequence[Effect]) -> Withdrawn | None:
+def implausible(model: Fit, effects: Sequence[Effect]) -> RejectedEffect | None:
     """Return the first effect with a value that an engineer would not believe."""
     keys = {effect.key for effect in effects}
     for setting in model.settings:
@@ -359,18 +294,18 @@ def implausible(model: Fit, effects: Sequence[Effect]) -> Withdrawn | None:
             if setting.effect.key in keys and not p.is_plausible(value):
                 figure = f"{p.name} = {value:.4g} {p.unit}".rstrip()
                 detail = f"{figure} ({p.plausible[0]:.4g} to {p.plausible[1]:.4g} would be)"
-                return Withdrawn(setting.effect.key, reason=Reason.IMPLAUSIBLE, detail=detail)
+                return RejectedEffect(setting.effect.key, reason=Reason.IMPLAUSIBLE, detail=detail)
     return None
 
 
-def _faint(outcome: Outcome) -> Withdrawn | None:
+def _faint(outcome: Outcome) -> RejectedEffect | None:
     """Return the first effect that may as well do nothing, by its clustered covariance.
 
     All its values together: those of a moved exit point are each in doubt through the others.
     """
     for effect in outcome.found:
         if outcome.fit.is_faint(effect):
-            return Withdrawn(effect.key, reason=Reason.FAINT)
+            return RejectedEffect(effect.key, reason=Reason.FAINT)
     return None
 
 

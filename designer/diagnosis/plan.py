@@ -1,31 +1,34 @@
-"""Which poses to measure, before there is a log: those that tell most of what is unknown.
+"""Which poses to measure: those that tell most of what is unknown, or part two rivals.
 
-D-optimal: of the poses that the robot holds, those whose readings have the largest determinant of
-JᵀJ, J being the slopes of the readings, in units of noise, in the unknowns. Poses are added one by
-one, then exchanged while the determinant grows (Fedorov, Theory of Optimal Experiments, 1972).
+Before there is a log, D-optimal: of the poses that the robot holds, those whose readings have the
+largest determinant of JᵀJ, J being the slopes of the readings, in units of noise, in the unknowns.
+Poses are added one by one, then exchanged while the determinant grows (Fedorov, Theory of Optimal
+Experiments, 1972). After a diagnosis, those at which two effects that its data cannot tell apart
+predict most differently.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.diagnosis.calibration import Told, told_by
+from designer.diagnosis.calibration import Identifiability, identifiability_of
 from designer.diagnosis.case import case_of
 from designer.diagnosis.fit import jacobian
 from designer.diagnosis.problem import Problem
 from designer.documents.plain import json_text
-from designer.effects.effect import Effect, Parameter, as_built
+from designer.effects.effect import Effect, Parameter, Setting, as_built
 from designer.errors import InputError
 from designer.measured.rows import FEWEST_ROWS
 from designer.model.cable import Cable
 from designer.model.measured_data import Measured, Noise
 from designer.model.measurements import Measurements
+from designer.model.region import Region
 from designer.model.robot import Poses
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Study, declared_settings
@@ -46,22 +49,12 @@ MOST_POSES = 200
 
 @dataclass(frozen=True, slots=True)
 class Expected:
-    """What to expect of a parameter.
+    """What to expect of a parameter."""
 
-    Parameters
-    ----------
-    effect, parameter
-        Which it is.
-    std : float
-        Standard deviation with the poses of the plan; inf where they settle no value.
-    std_random : float
-        Median of the same over random choices of as many poses.
-    """
-
-    effect: Effect
+    effect: Effect  #: which it is
     parameter: Parameter
-    std: float
-    std_random: float
+    std: float  #: standard deviation with the poses of the plan; inf where they settle no value
+    std_random: float  #: median of the same over random choices of as many poses
 
     @property
     def label(self) -> str:
@@ -85,38 +78,19 @@ class DeviationCurve(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """Poses to measure.
+    """Poses to measure."""
 
-    Parameters
-    ----------
-    study, noise
-        The problem; the noise of a kind that is not read is inf.
-    statics : Statics
-        The robot at the poses, in the order in which to visit them.
-    places : array (n_poses, 3 or 6)
-        Position [m], and rotation vector [rad] where the platform can turn.
-    n_candidates : int
-        Poses that the robot holds, of which these were chosen.
-    expected : tuple of Expected
-        What to expect of each unknown.
-    condition, observability : float
-        As in `designer.diagnosis.calibration`.
-    sizes : tuple of int
-        Numbers of poses of the curves.
-    curves : tuple of DeviationCurve
-        Deviations over the number of poses.
-    """
-
-    study: Study
+    study: Study  #: the problem; the noise of a kind that is not read is inf
     noise: Noise
-    statics: Statics
+    statics: Statics  #: the robot at the poses, in the order in which to visit them
+    #: (n_poses, 3 or 6): position [m], and rotation vector [rad] where the platform can turn
     places: FloatArray
-    n_candidates: int
-    expected: tuple[Expected, ...]
-    condition: float
+    n_candidates: int  #: poses that the robot holds, of which these were chosen
+    expected: tuple[Expected, ...]  #: what to expect of each unknown
+    condition: float  #: as in `designer.diagnosis.calibration`
     observability: float
-    sizes: tuple[int, ...]
-    curves: tuple[DeviationCurve, ...]
+    sizes: tuple[int, ...]  #: numbers of poses of the curves
+    curves: tuple[DeviationCurve, ...]  #: deviations over the number of poses
 
     @property
     def untold(self) -> tuple[Expected, ...]:
@@ -180,7 +154,7 @@ def plan(
     Raises
     ------
     InputError
-        If there is nothing to choose from, or to be told.
+        If there is nothing to choose from, or to be identified.
     """
     from threadpoolctl import threadpool_limits
 
@@ -211,14 +185,19 @@ def _plan(
         raise InputError.at("--poses", f"is {count}", expected)
     progress("the choice")
     chosen = exchanged(slopes, count)
-    told = told_by(slopes[chosen], count)
+    identifiability = identifiability_of(slopes[chosen], count)
     rng = np.random.default_rng(0)
     draws = [rng.choice(len(places), count, replace=False) for _ in range(_DRAWS)]
-    std_random = np.median([told_by(slopes[draw], count).std for draw in draws], axis=0) * typical
+    std_random = (
+        np.median([identifiability_of(slopes[draw], count).std for draw in draws], axis=0) * typical
+    )
     sizes = sorted({min(max(round(share * count), 1), len(places)) for share in _SIZES})
-    by_size = [told if n == count else told_by(slopes[exchanged(slopes, n)], n) for n in sizes]
+    by_size = [
+        identifiability if n == count else identifiability_of(slopes[exchanged(slopes, n)], n)
+        for n in sizes
+    ]
     route = chosen[_route(places[chosen, :3])]
-    std = told.std * typical
+    std = identifiability.std * typical
     return Plan(
         study,
         problem.noise,
@@ -229,8 +208,8 @@ def _plan(
             Expected(*pair, float(std[k]), float(std_random[k]))
             for k, pair in enumerate(parameters)
         ),
-        condition=told.condition,
-        observability=told.observability,
+        condition=identifiability.condition,
+        observability=identifiability.observability,
         sizes=tuple(sizes),
         curves=tuple(_curves(parameters, by_size, typical)),
     )
@@ -257,17 +236,17 @@ def candidates(
     robot = as_built(machine, declared_settings(study, machine)).robot
     statics = solve_sagging(robot, measured.poses, _that_can_break(cable))
     tension_N = statics.cable_tension_N
-    held = statics.is_solved & (tension_N <= cable.allowable_tension_N).all(axis=-1)
-    if not held.any():
+    is_held = statics.is_solved & (tension_N <= cable.allowable_tension_N).all(axis=-1)
+    if not is_held.any():
         problem = f"the robot holds none of {len(places)} poses with its cable"
         raise InputError([study.source.fault("workspace.region", problem, "poses that it holds")])
-    length_m, tension_N = statics.length_m[held], statics.exit_tension_N[held]
+    length_m, tension_N = statics.length_m[is_held], statics.exit_tension_N[is_held]
     measured = Measured(
-        Poses.at(places[held]),
+        Poses.at(places[is_held]),
         length_m if "length" in noise else np.full_like(length_m, np.nan),
         tension_N if "tension" in noise else np.full_like(length_m, np.nan),
         settled=True,
-        row_numbers=np.arange(1, int(held.sum()) + 1),
+        row_numbers=np.arange(1, int(is_held.sum()) + 1),
     )
     case = case_of(study, measurements, measured)
     for name in measurements.unknown:
@@ -283,7 +262,7 @@ def candidates(
         raise InputError([study.source.fault("measurements.unknown", "is empty", expected)])
     sizes = Noise(noise.get("length", math.inf), noise.get("tension", math.inf), "declared")
     problem_there = Problem(measured, case.predictor(), sizes)
-    return problem_there, list(case.given), statics, places[held]
+    return problem_there, list(case.given), statics, places[is_held]
 
 
 def _that_can_break(cable: Cable) -> Cable:
@@ -314,8 +293,8 @@ def slopes_at(problem: Problem, effects: Sequence[Effect], study: Study) -> Floa
     declared = {s.effect.key: s.values for s in declared_settings(study, problem.predict.machine)}
     values = [declared.get(effect.key, effect.neutral) for effect in effects]
     vector = np.array([
-        known.get(p.name, p.neutral)
-        for effect, known in zip(effects, values, strict=True)
+        values_of_effect.get(p.name, p.neutral)
+        for effect, values_of_effect in zip(effects, values, strict=True)
         for p in effect.parameters
     ])  # fmt: skip
     typical = np.array([p.typical for effect in effects for p in effect.parameters])
@@ -334,20 +313,20 @@ def exchanged(slopes: FloatArray, count: int) -> IntArray:
         before = list(chosen)
         for place, pose in enumerate(before):
             information = information - slopes[pose].T @ slopes[pose]
-            others = chosen[:place] + chosen[place + 1 :]
-            chosen[place] = _best(slopes, information, others)
+            unchanged = chosen[:place] + chosen[place + 1 :]
+            chosen[place] = _best(slopes, information, unchanged)
             information = information + slopes[chosen[place]].T @ slopes[chosen[place]]
         if chosen == before:
             break
     return np.array(chosen)
 
 
-def _best(slopes: FloatArray, information: FloatArray, taken: Sequence[int]) -> int:
+def _best(slopes: FloatArray, information: FloatArray, excluded: Sequence[int]) -> int:
     """Return the pose that multiplies the determinant by most, of those not taken."""
     inverse = np.linalg.inv(information)
-    own = slopes @ inverse @ slopes.transpose(0, 2, 1) + np.eye(slopes.shape[1])
-    gain = np.linalg.slogdet(own)[1]
-    gain[list(taken)] = -np.inf
+    growth = slopes @ inverse @ slopes.transpose(0, 2, 1) + np.eye(slopes.shape[1])
+    gain = np.linalg.slogdet(growth)[1]
+    gain[list(excluded)] = -np.inf
     return int(np.argmax(gain))
 
 
@@ -362,10 +341,107 @@ def _route(position_m: FloatArray) -> IntArray:
 
 
 def _curves(
-    parameters: Sequence[tuple[Effect, Parameter]], by_size: Sequence[Told], typical: FloatArray
+    parameters: Sequence[tuple[Effect, Parameter]],
+    by_size: Sequence[Identifiability],
+    typical: FloatArray,
 ) -> Iterator[DeviationCurve]:
-    std = np.array([told.std for told in by_size]) * typical
+    std = np.array([identifiability.std for identifiability in by_size]) * typical
     kinds = [(effect.id, p.unit) for effect, p in parameters]
     for kind in dict.fromkeys(kinds):
-        alike = [k for k, other in enumerate(kinds) if other == kind]
+        alike = [k for k, kind_of_parameter in enumerate(kinds) if kind_of_parameter == kind]
         yield DeviationCurve(*kind, std[:, alike].max(axis=1))
+
+
+# Poses that tell two rivals apart.
+
+_RIVAL_CANDIDATES = 2000
+"""Positions to look at: in a cube, neighbours are a twelfth of its side apart."""
+_SPACING = 0.15
+"""Share of the region between proposals: else all three would be one place."""
+_DISTINCT_STD = 3.0
+"""Standard deviations between two rivals that are distinguished."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Proposal:
+    """Poses whose measurement would tell two rivals apart."""
+
+    found: str  #: effect that was found, then its rival
+    rival: str
+    positions_m: FloatArray = field(metadata={"json": "poses"})  #: (n_poses, 3): where to measure
+    #: (n_poses,): difference of their predictions there, in units of noise, over all readings of a
+    #: pose
+    separation: FloatArray
+
+    @property
+    def repeats(self) -> FloatArray:
+        """How often to measure each pose, until the two are three deviations apart (n_poses,).
+
+        Inf where both predict the same.
+        """
+        with np.errstate(divide="ignore"):
+            return np.ceil((_DISTINCT_STD / self.separation) ** 2)
+
+
+def propose(
+    problem: Problem,
+    region: Region | None,
+    fitted: Sequence[Setting],
+    rival: Sequence[Setting],
+    names: tuple[str, str],
+) -> Proposal:
+    """Return the poses at which the predictions of two models, both fitted, differ most.
+
+    The surroundings of a new pose are taken from the middle row. Where there is no region, poses
+    are sought in the box of the measured ones.
+    """
+    positions = _rival_positions(problem.measured, region)
+    measured = _measured_at(problem.measured, positions)
+    elsewhere = replace(problem, measured=measured, predict=problem.predict.at(measured))
+    readings, rival_readings = (
+        elsewhere.predicted(settings).stacked for settings in (fitted, rival)
+    )
+    is_measured = ~np.isnan(problem.measured.readings).all(axis=0)
+    gap = (readings - rival_readings)[:, is_measured] / problem.sigma[is_measured]
+    separation = np.sqrt(np.nansum(gap**2, axis=1))
+    size = np.maximum(np.ptp(positions, axis=0), 1e-9)
+    chosen: list[int] = []
+    for k in np.argsort(-separation):
+        apart = [np.abs((positions[k] - positions[c]) / size).max() > _SPACING for c in chosen]
+        if all(apart):
+            chosen.append(int(k))
+        if len(chosen) == 3:  # one to decide, two in case that it cannot be reached
+            break
+    return Proposal(*names, positions[chosen], separation[chosen])
+
+
+def _rival_positions(measured: Measured, region: Region | None) -> FloatArray:
+    if region is not None:
+        return np.concatenate(list(region.samples_m(_RIVAL_CANDIDATES, "low_discrepancy", 0)))
+    position = measured.poses.position_m
+    rng = np.random.default_rng(0)
+    return rng.uniform(position.min(axis=0), position.max(axis=0), (_RIVAL_CANDIDATES, 3))
+
+
+def _measured_at(measured: Measured, positions: FloatArray) -> Measured:
+    """Return rows at rest at other positions, turned as the middle row, in its surroundings."""
+    middle, count = measured.n_rows // 2, len(positions)
+    rotation = measured.poses.rotation
+    unread = np.full((count, measured.length_m.shape[1]), np.nan)
+
+    def repeated(column: FloatArray | None) -> FloatArray | None:
+        return None if column is None else np.repeat(column[middle : middle + 1], count, axis=0)
+
+    return replace(
+        measured,
+        settled=True,
+        poses=Poses(positions, rotation if rotation.ndim == 2 else rotation[middle]),
+        length_m=unread,
+        tension_N=unread,
+        time_s=repeated(measured.time_s),
+        temperature_C=repeated(measured.temperature_C),
+        wind_m_per_s=repeated(measured.wind_m_per_s),
+        covariates={},
+        row_numbers=np.arange(1, count + 1),
+        session=None,
+    )

@@ -1,19 +1,20 @@
 """Readings as a model predicts them by statics, and the residual of data in units of noise.
 
 Of a robot with cables to spare the internal forces of each row are taken from its own readings; see
-`designer.statics.internal`.
+`designer.statics.internal`. Of a machine that was measured several times each session is predicted
+by itself: its effects, its rows, its clock.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.kept_slopes import KeptSlopes
 from designer.diagnosis.statistics import MAD_TO_STD
 from designer.effects.effect import Effect, Readings, Setting, as_built
 from designer.effects.registry import SHIPPED, KnownEffects
@@ -86,32 +87,24 @@ def straightened_m(machine: Machine, tension_N: FloatArray, span_m: FloatArray) 
     return np.asarray(load**2 * 3.0 * layer / (8.0 * tension_N**2))
 
 
-_STILL = 1e-5
+_TOLERANCE = 1e-5
 """Of the noise: far below what the slopes of a fit would show."""
-_ABOUT = (0.7, 2.8)
+_DISTRUST_RANGE = (0.7, 2.8)
 """Residual over the distrust within which the latter stays. A new distrust, a power of two, is at
 most a factor of two below the residual; √2 more on either side keep it from swinging."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Guess:
-    """What internal forces are taken with.
+    """What internal forces are taken with."""
 
-    Parameters
-    ----------
-    added : array (n_rows, 2 n_cables)
-        What sensors and stiff ends add to lengths [m] and tensions [N].
-    distrust : (float, float)
-        By how much more than noise lengths and tensions are off. As long as the model is off,
-        readings are trusted to no more than that: else cables would be let slack to make up for an
-        exit point in the wrong place.
-    near : Statics or None
-        The balance that it came from.
-    """
-
+    #: (n_rows, 2 n_cables): what sensors and stiff ends add to lengths [m] and tensions [N]
     added: FloatArray
+    #: by how much more than noise lengths and tensions are off. As long as the model is off,
+    #: readings are trusted to no more than that: else cables would be let slack to make up for an
+    #: exit point in the wrong place.
     distrust: tuple[float, float] = (1.0, 1.0)
-    near: Statics | None = None
+    near: Statics | None = None  #: the balance that it came from
 
     def with_distrust(self, measured: Measured, displayed: Readings, noise: Noise) -> Guess:
         """Return the guess with a distrust that suits what is displayed."""
@@ -123,7 +116,7 @@ class Guess:
     def is_near(self, previous: Guess, noise: Noise) -> bool:
         """Tell whether another guess would give the same, to a small share of the noise."""
         change = np.abs(self.added - previous.added)
-        is_still = change <= _STILL * noise.of_channels(change.shape[1] // 2)
+        is_still = change <= _TOLERANCE * noise.of_channels(change.shape[1] // 2)
         return bool(is_still.all()) and self.distrust == previous.distrust
 
 
@@ -131,25 +124,17 @@ def _distrust(off: FloatArray, before: float) -> float:
     """Return how far readings are off in units of noise; as before where that is about right."""
     finite = off[~np.isnan(off)]
     size = MAD_TO_STD * float(np.median(finite)) if finite.size else 0.0
-    if _ABOUT[0] <= size / before <= _ABOUT[1]:
+    if _DISTRUST_RANGE[0] <= size / before <= _DISTRUST_RANGE[1]:
         return before
     return float(2.0 ** np.floor(np.log2(max(size, 1.0))))
 
 
 @dataclass(frozen=True, eq=False)
 class Built:
-    """A machine with effects on it, and the rows in the poses that it had.
+    """A machine with effects on it, and the rows in the poses that it had."""
 
-    Parameters
-    ----------
-    machine : Machine
-        With the effects.
-    measured : Measured
-        The rows.
-    """
-
-    machine: Machine
-    measured: Measured
+    machine: Machine  #: with the effects
+    measured: Measured  #: the rows
 
     @cached_property
     def _balance(self) -> InternalBalance:
@@ -169,12 +154,110 @@ def true_readings(statics: Statics) -> Readings:
     return Readings(statics.length_m, statics.exit_tension_N)
 
 
+# Slopes that were taken lately, which are good near the place where they were taken.
+#
+# What a reading gains by a parameter hardly changes while this and the others move by little. So a
+# fit that nears its end, or that adds an effect to a model, asks for few slopes anew. The price is
+# a fit off by a small share of its standard deviations; one that goes to the end asks for exact
+# slopes.
+
+_OWN_CHANGE, _OTHER_CHANGE = 0.02, 0.3
+"""By how much values of the effect itself, and of others, may have moved, over `_Values.unit`."""
+_MAX_PLACES = 12
+"""Those of the parts of one validation, and a few more."""
+
+
+class _Values(NamedTuple):
+    """Values of an effect, those at which it does nothing, and what counts as a change.
+
+    That is a typical change, or a tenth of the way from doing nothing where that is more.
+    """
+
+    values: FloatArray
+    neutral: FloatArray
+    unit: FloatArray
+
+
+_Place = Mapping[str, _Values]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _CachedSlopes:
+    place: _Place
+    trust: Hashable
+    slopes: dict[str, FloatArray]
+
+
+@dataclass(eq=False)
+class SlopeCache:
+    """Remembers slopes by the values of all effects; the latest places only."""
+
+    _taken: list[_CachedSlopes] = field(init=False, default_factory=list)
+
+    def of(
+        self,
+        settings: Sequence[Setting],
+        trust: Hashable,
+        compute: Callable[[Setting], FloatArray],
+        *,
+        nearly: bool,
+    ) -> FloatArray:
+        """Return the slopes (…, n_parameters) of all effects at their values.
+
+        Those of a place near by will do where ``nearly``; ``trust`` is what else slopes depend on,
+        and ``compute`` returns those in the parameters of one of the settings.
+        """
+        place = {s.effect.key: _values_of(s) for s in settings}
+        slopes: dict[str, FloatArray] = {}
+        for cached in reversed([t for t in self._taken if t.trust == trust]):
+            usable = _usable_slopes(place, cached, nearly=nearly) - slopes.keys()
+            slopes |= {key: cached.slopes[key] for key in usable}
+            if usable:  # those in use are the last to go
+                self._taken.remove(cached)
+                self._taken.append(cached)
+        fresh = {s.effect.key: compute(s) for s in settings if s.effect.key not in slopes}
+        if fresh:
+            self._taken = [*self._taken[1 - _MAX_PLACES :], _CachedSlopes(place, trust, fresh)]
+        slopes |= fresh
+        return np.concatenate([slopes[s.effect.key] for s in settings], axis=-1)
+
+
+def _values_of(setting: Setting) -> _Values:
+    effect = setting.effect
+    values = np.array([setting.values[p.name] for p in effect.parameters])
+    neutral = np.array([p.neutral for p in effect.parameters])
+    typical = np.array([p.typical for p in effect.parameters])
+    return _Values(values, neutral, np.maximum(typical, 0.1 * np.abs(values - neutral)))
+
+
+def _usable_slopes(place: _Place, cached: _CachedSlopes, *, nearly: bool) -> set[str]:
+    """Return the effects whose slopes, taken elsewhere, are good at a place."""
+    moved = {key: _distance(key, place, cached.place) for key in {**place, **cached.place}}
+    own_limit, other_limit = (_OWN_CHANGE, _OTHER_CHANGE) if nearly else (0.0, 0.0)
+    if max(moved.values()) > other_limit:
+        return set()
+    return {key for key in cached.slopes if key in place and moved[key] <= own_limit}
+
+
+def _distance(key: str, place: _Place, cached: _Place) -> float:
+    """Return how far an effect's values are apart; without the effect it does nothing."""
+    at_place, at_cached = place.get(key), cached.get(key)
+    present = at_place or at_cached
+    assert present is not None
+    a, b = (
+        present.neutral if values is None else values.values for values in (at_place, at_cached)
+    )
+    return float(np.max(np.abs(a - b) / present.unit))
+
+
+# The model.
+
 Kind = tuple[object, ...]
 """A set of effects, whatever their values, with the noise that is assumed."""
 
-_MOST_BUILT = 8
+_MAX_MACHINES = 8
 """Machines that are kept: effects on readings, one after the other, leave the machine alone."""
-_MOST_TURNS = 12
+_MAX_ITERATIONS = 12
 """Turns at most: what sensors add depends little on internal forces, so that few will do."""
 
 
@@ -190,31 +273,20 @@ class Predictor:
     Of a robot with as many cables as degrees of freedom the pose alone tells lengths and tensions.
     With more cables each row's internal forces are taken from its own readings, see
     `designer.diagnosis.problem`.
-
-    Parameters
-    ----------
-    machine : Machine
-        As drawn, without any effect.
-    measured : Measured
-        The data.
-    fixed : tuple of Setting
-        Effects that are declared; with those that are tried they act in the order of ``effects``.
-    effects : KnownEffects
-        All effects, in the order in which they act.
-    session : int or None
-        The session that the rows are of, from 1, where there are several; effects of others do not
-        act.
     """
 
-    machine: Machine
-    measured: Measured
+    machine: Machine  #: as drawn, without any effect
+    measured: Measured  #: the data
+    #: effects that are declared; with those that are tried they act in the order of ``effects``
     fixed: tuple[Setting, ...] = ()
-    effects: KnownEffects = SHIPPED
+    effects: KnownEffects = SHIPPED  #: all effects, in the order in which they act
+    #: the session that the rows are of, from 1, where there are several; effects of others do not
+    #: act
     session: int | None = None
     _guesses: dict[Kind, Guess] = field(init=False, default_factory=dict)
-    _known: dict[Kind, tuple[Readings, Readings]] = field(init=False, default_factory=dict)
+    _solutions: dict[Kind, tuple[Readings, Readings]] = field(init=False, default_factory=dict)
     _built: dict[Kind, tuple[Measured, Built]] = field(init=False, default_factory=dict)
-    slopes: KeptSlopes = field(init=False, default_factory=KeptSlopes)
+    slopes: SlopeCache = field(init=False, default_factory=SlopeCache)
 
     def at(self, measured: Measured) -> Predictor:
         """Return the same model for other rows; for the same rows, one without a memory."""
@@ -232,17 +304,17 @@ class Predictor:
                 poses = setting.effect.on_poses(poses, setting.values)
         return replace(self.measured, poses=poses)
 
-    def _kept(self, settings: Sequence[Setting]) -> Built:
+    def _built_with(self, settings: Sequence[Setting]) -> Built:
         """Return machine and rows as these effects have them, from the latest where it is there."""
         bodily = (s for s in settings if s.effect.on_machine or s.effect.on_poses)
         key = tuple((s.effect.key, *s.values.values()) for s in bodily)
-        rows, kept = self._built.get(key, (None, None))
-        if kept is None or rows is not self.measured:
-            kept = Built(self.built(settings), self.placed(settings))
-            if len(self._built) >= _MOST_BUILT:
+        rows, built = self._built.get(key, (None, None))
+        if built is None or rows is not self.measured:
+            built = Built(self.built(settings), self.placed(settings))
+            if len(self._built) >= _MAX_MACHINES:
                 self._built.clear()
-            self._built[key] = self.measured, kept
-        return kept
+            self._built[key] = self.measured, built
+        return built
 
     def _all(self, settings: Sequence[Setting]) -> list[Setting]:
         """Return the effects that show in these rows, in the order in which they act."""
@@ -307,11 +379,11 @@ class Predictor:
         solve: Callable[[Sequence[Setting], Noise], tuple[Readings, Readings]],
     ) -> tuple[Readings, Readings]:
         key = (noise, *((s.effect.key, *s.values.values()) for s in settings))
-        if key not in self._known:
-            if len(self._known) > 64:  # more than the slopes of one fit ask for
-                self._known.clear()
-            self._known[key] = solve(settings, noise)
-        return self._known[key]
+        if key not in self._solutions:
+            if len(self._solutions) > 64:  # more than the slopes of one fit ask for
+                self._solutions.clear()
+            self._solutions[key] = solve(settings, noise)
+        return self._solutions[key]
 
     def distrust(self, settings: Sequence[Setting], noise: Noise) -> tuple[float, float]:
         """Return how much more than noise readings were off with these effects; see `Guess`."""
@@ -319,8 +391,8 @@ class Predictor:
         return guess.distrust if guess else (1.0, 1.0)
 
     def _physical(self, settings: Sequence[Setting], _: Noise) -> tuple[Readings, Readings]:
-        kept = self._kept(settings)
-        readings = readings_of(kept.machine, kept.measured.poses, kept.measured)
+        built = self._built_with(settings)
+        readings = readings_of(built.machine, built.measured.poses, built.measured)
         return readings, readings
 
     def _with_forces(self, settings: Sequence[Setting], noise: Noise) -> tuple[Readings, Readings]:
@@ -341,7 +413,7 @@ class Predictor:
         guess = self._guesses[kind] = self._settled(settings, noise, judges=True)[0]
         if before is not None and before.distrust == guess.distrust:
             return False
-        self._known.clear()
+        self._solutions.clear()
         return True
 
     def trust_as(self, known: Sequence[Setting], effects: Sequence[Effect], noise: Noise) -> None:
@@ -361,26 +433,26 @@ class Predictor:
 
         What they add depends on the internal forces in turn, though little.
         """
-        kept, sensing = self._kept(settings), self._sensing(settings)
-        nothing = Guess(np.zeros_like(kept.measured.readings))
-        guess = self._guesses.get(kind_of(settings, noise), nothing)
+        built, sensing = self._built_with(settings), self._sensing(settings)
+        initial = Guess(np.zeros_like(built.measured.readings))
+        guess = self._guesses.get(kind_of(settings, noise), initial)
         # Of two ways to hold a row, where there are two, the first judgement chooses.
-        near = None if judges else guess.near
-        if near is not None:  # what these values add to it
-            _, displayed, guess = _displayed(kept, sensing, near, guess)
-        for _ in range(_MOST_TURNS):
-            held = kept.balanced(guess, noise, near)
-            near = None if judges else held
+        start = None if judges else guess.near
+        if start is not None:  # what these values add to it
+            _, displayed, guess = _displayed(built, sensing, start, guess)
+        for _ in range(_MAX_ITERATIONS):
+            balance = built.balanced(guess, noise, start)
+            start = None if judges else balance
             before = guess
-            true, displayed, guess = _displayed(kept, sensing, held, before)
+            true, displayed, guess = _displayed(built, sensing, balance, before)
             if judges:
-                guess = guess.with_distrust(kept.measured, displayed, noise)
+                guess = guess.with_distrust(built.measured, displayed, noise)
             if guess.is_near(before, noise):
                 break
         return guess, true, displayed
 
     def _shown(self, readings: Readings, settings: Sequence[Setting]) -> Readings:
-        return _shown(self._kept(settings), self._sensing(settings), readings)
+        return _shown(self._built_with(settings), self._sensing(settings), readings)
 
     def _sensing(self, settings: Sequence[Setting]) -> list[Setting]:
         """Return the effects that act on readings, in the order in which they do."""
@@ -388,41 +460,31 @@ class Predictor:
 
 
 def _displayed(
-    kept: Built, sensing: Sequence[Setting], held: Statics, guess: Guess
+    built: Built, sensing: Sequence[Setting], balance: Statics, guess: Guess
 ) -> tuple[Readings, Readings, Guess]:
     """Return true and displayed readings of a balance, and the guess that it leads to."""
-    true = true_readings(held)
-    displayed = _shown(kept, sensing, with_stiff_ends(kept.machine, held, true))
+    true = true_readings(balance)
+    displayed = _shown(built, sensing, with_stiff_ends(built.machine, balance, true))
     added = np.nan_to_num(displayed.stacked - true.stacked)
-    return true, displayed, replace(guess, added=added, near=held)
+    return true, displayed, replace(guess, added=added, near=balance)
 
 
-def _shown(kept: Built, sensing: Sequence[Setting], readings: Readings) -> Readings:
+def _shown(built: Built, sensing: Sequence[Setting], readings: Readings) -> Readings:
     for setting in sensing:
         assert setting.effect.on_readings is not None
         # Of a law that takes the machine, as the other effects have it.
-        more = {"machine": kept.machine} if setting.effect.takes_machine else {}
-        readings = setting.effect.on_readings(readings, setting.values, kept.measured, **more)
+        more = {"machine": built.machine} if setting.effect.takes_machine else {}
+        readings = setting.effect.on_readings(readings, setting.values, built.measured, **more)
     return readings
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Problem:
-    """Data, model and noise.
+    """Data, model and noise."""
 
-    Parameters
-    ----------
-    measured : Measured
-        The data.
-    predict : Predictor
-        The model.
-    noise : Noise
-        Scale of the residual.
-    """
-
-    measured: Measured
-    predict: Predictor
-    noise: Noise
+    measured: Measured  #: the data
+    predict: Predictor  #: the model
+    noise: Noise  #: scale of the residual
 
     @property
     def sigma(self) -> FloatArray:
@@ -495,15 +557,100 @@ def imbalance_of(predict: Predictor, settings: Sequence[Setting]) -> FloatArray 
     if predict.machine.robot.has_enough_cables:
         return None
     placed = predict.placed(settings)
-    left = np.full(placed.n_rows, np.nan)
+    imbalances = np.full(placed.n_rows, np.nan)
     for rows, machine in predict.machines(settings):
-        own = placed if rows.all() else placed.part(rows)
-        force = added_force_N(machine, own)
-        statics = solve_underactuated(machine.robot, own.poses, machine.cables, force)
-        left[rows] = imbalance(statics)
-    return left
+        rows_placed = placed if rows.all() else placed.part(rows)
+        force = added_force_N(machine, rows_placed)
+        statics = solve_underactuated(machine.robot, rows_placed.poses, machine.cables, force)
+        imbalances[rows] = imbalance(statics)
+    return imbalances
 
 
 def channel_names(n_cables: int) -> list[str]:
     """Return the names of the columns of a residual."""
     return [f"{kind} {k}" for kind in ("length", "tension") for k in range(1, n_cables + 1)]
+
+
+# Several sessions.
+
+
+@dataclass(eq=False)
+class SessionsPredictor(Predictor):
+    """Predicts readings of several sessions, each by itself: its effects, its rows, its clock."""
+
+    @cached_property
+    def parts(self) -> list[tuple[BoolArray, Predictor]]:
+        """The rows (n_rows,) of each session, and what predicts them."""
+        numbers = self.measured.session
+        assert numbers is not None
+        rows_of = [(int(number), numbers == number) for number in np.unique(numbers)]
+        return [(rows, self._of(number, self.measured.part(rows))) for number, rows in rows_of]
+
+    def _of(self, number: int, measured: Measured) -> Predictor:
+        return Predictor(self.machine, measured, self.fixed, self.effects, number)
+
+    def at(self, measured: Measured) -> Predictor:
+        """Return the same model for other rows; those of no session are as of the first."""
+        return (
+            self._of(1, measured) if measured.session is None else replace(self, measured=measured)
+        )
+
+    def _acting(
+        self, settings: Sequence[Setting]
+    ) -> Iterator[tuple[BoolArray, Predictor, list[Setting]]]:
+        """Yield rows and predictor of each session, with the effects that act in it."""
+        for rows, part in self.parts:
+            yield rows, part, [s for s in settings if s.effect.session in (None, part.session)]
+
+    def machines(self, settings: Sequence[Setting]) -> Iterator[tuple[BoolArray, Machine]]:
+        """Yield the machine as it was in each session, and its rows (n_rows,)."""
+        for rows, part, acting in self._acting(settings):
+            yield rows, part.built(acting)
+
+    def placed(self, settings: Sequence[Setting]) -> Measured:
+        """Return the rows in the poses that the platform had, as these effects have it."""
+        placed = [part.placed(acting).poses for _, part, acting in self._acting(settings)]
+        rotations = [p.rotation for p in placed]
+        is_turned = rotations[0].ndim > 2
+        positions = np.concatenate([p.position_m for p in placed])
+        poses = Poses(positions, np.concatenate(rotations) if is_turned else rotations[0])
+        return replace(self.measured, poses=poses)
+
+    def __call__(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+        """Return what the sensors would show with these effects."""
+        return _concatenated([part(acting, noise) for _, part, acting in self._acting(settings)])
+
+    def surroundings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+        """Return lengths and tensions that a residual may go with."""
+        return _concatenated(
+            [part.surroundings(acting, noise) for _, part, acting in self._acting(settings)]
+        )
+
+    def true_readings(self, settings: Sequence[Setting], noise: Noise) -> Readings:
+        """Return what was measured, less what sensors and stiff ends add to it in the model."""
+        return _concatenated(
+            [part.true_readings(acting, noise) for _, part, acting in self._acting(settings)]
+        )
+
+    def distrust(self, settings: Sequence[Setting], noise: Noise) -> tuple[float, float]:
+        """Return how much more than noise readings were off at most in a session."""
+        of_each = [part.distrust(acting, noise) for _, part, acting in self._acting(settings)]
+        return max(length for length, _ in of_each), max(tension for _, tension in of_each)
+
+    def trust_as(self, known: Sequence[Setting], effects: Sequence[Effect], noise: Noise) -> None:
+        """Trust readings of each session as with a known model; see `Predictor`."""
+        for _, part, acting_settings in self._acting(known):
+            acting = [e for e in effects if e.session in (None, part.session)]
+            part.trust_as(acting_settings, acting, noise)
+
+    def trust_anew(self, settings: Sequence[Setting], noise: Noise) -> bool:
+        """Judge anew how far readings of each session can be trusted; tell if that changed."""
+        changes = [part.trust_anew(acting, noise) for _, part, acting in self._acting(settings)]
+        return any(changes)
+
+
+def _concatenated(readings: Sequence[Readings]) -> Readings:
+    return Readings(
+        np.concatenate([part.length_m for part in readings]),
+        np.concatenate([part.tension_N for part in readings]),
+    )

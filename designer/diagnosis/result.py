@@ -13,12 +13,11 @@ import numpy as np
 
 from designer import __version__, checked
 from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.accuracy import Error, ForwardError, Outlier, SessionError, Stage
 from designer.diagnosis.calibration import Calibration
-from designer.diagnosis.errors_of import Error, Foretold, Outlier, SessionError, Stage
-from designer.diagnosis.events import wrong_poses
-from designer.diagnosis.proposals import Proposal
+from designer.diagnosis.plan import Proposal
 from designer.diagnosis.search import Step
-from designer.diagnosis.structure import Correction, Structure, Whereabouts
+from designer.diagnosis.structure import Correction, Structure, Whereabouts, wrong_poses
 from designer.documents.plain import (
     DIAGNOSIS_FORMAT,
     Json,
@@ -29,8 +28,8 @@ from designer.documents.plain import (
     record,
 )
 from designer.effects.effect import Effect, Readings, Setting
-from designer.effects.platform_force import EFFECT as FORCE
-from designer.effects.poses import DISTORTION
+from designer.effects.platform_loads import PLATFORM_FORCE
+from designer.effects.setting_up import POSE_DISTORTION
 from designer.model.machine import Machine
 from designer.model.measured_data import KINDS, Measured, Noise, ReadingKind
 from designer.spelling import in_runs
@@ -58,10 +57,6 @@ class Estimate:
     std: float
 
 
-def _effect(effect: Effect) -> dict[str, object]:
-    return {**effect.identified(), "summary": effect.summary, "cause": effect.cause}
-
-
 def _rivals(keys: Sequence[str]) -> dict[str, object]:
     ids = dict.fromkeys(key.split(" of ")[0] for key in keys)
     return {"rivals": list(ids), "rival_keys": keys}
@@ -69,31 +64,20 @@ def _rivals(keys: Sequence[str]) -> dict[str, object]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Finding:
-    """An effect that the model lacked.
+    """An effect that the model lacked."""
 
-    Parameters
-    ----------
-    effect : Effect
-        What it is.
-    parameters : mapping of str to Estimate
-        Its numbers.
-    rivals : tuple of str
-        Effects that this data cannot tell from it; several together are joined by ``and``.
-    heldout_gain, heldout_gain_std : float
-        Share of the held-out mean square that goes when it is added to the others, and how far
-        that is in doubt.
-    warnings : tuple of str
-        What speaks against its values.
-    rule_out : tuple of str
-        Of the rivals of what is physics, the errors of setting up: those are to be ruled out first.
-    """
-
-    effect: Effect = field(metadata={"json": _effect})
-    parameters: Mapping[str, Estimate]
+    effect: Effect = field(
+        metadata={"json": lambda e: {**e.identified(), "summary": e.summary, "cause": e.cause}}
+    )  #: what it is
+    parameters: Mapping[str, Estimate]  #: its numbers
+    #: effects that this data cannot tell from it; several together are joined by ``and``
     rivals: tuple[str, ...] = field(metadata={"json": _rivals})
+    #: share of the held-out mean square that goes when it is added to the others, and how far that
+    #: is in doubt
     heldout_gain: float
     heldout_gain_std: float
-    warnings: tuple[str, ...]
+    warnings: tuple[str, ...]  #: what speaks against its values
+    #: of the rivals of what is physics, the errors of setting up: those are to be ruled out first
     rule_out: tuple[str, ...] = ()
 
 
@@ -112,38 +96,23 @@ class Reason(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Withdrawn:
-    """An effect that fits, but does not hold.
+class RejectedEffect:
+    """An effect that fits, but does not hold."""
 
-    Parameters
-    ----------
-    effect : str
-        Its key.
-    covariate : str
-        What it would have to change with; empty for another reason.
-    variation : float
-        By how much of itself, for each standard deviation of the covariate; NaN if not tried.
-    reason : Reason
-        Why it was not kept.
-    detail : str
-        The values that are not plausible; else empty.
-    gain, gain_std : float
-        Share of the held-out mean square that goes with it, and how far that is in doubt; NaN if
-        not tried.
-    instead : tuple of Effect
-        What took its place.
-    """
-
-    effect: str = field(metadata={"json": "id"})
+    effect: str = field(metadata={"json": "id"})  #: its key
+    #: what it would have to change with; empty for another reason
     covariate: str = field(default="", metadata={"json": lambda name: {"covariate": name or None}})
+    #: by how much of itself, for each standard deviation of the covariate; NaN if not tried
     variation: float = float("nan")
     reason: Reason = field(
         default=Reason.DRIFTS, metadata={"json": lambda reason: {"reason": reason.name.lower()}}
-    )
-    detail: str = ""
+    )  #: why it was not kept
+    detail: str = ""  #: the values that are not plausible; else empty
+    #: share of the held-out mean square that goes with it, and how far that is in doubt; NaN if not
+    #: tried
     gain: float = field(default=float("nan"), metadata={"json": "heldout_gain"})
     gain_std: float = field(default=float("nan"), metadata={"json": "heldout_gain_std"})
-    instead: tuple[Effect, ...] = field(default=(), metadata={"json": None})
+    instead: tuple[Effect, ...] = field(default=(), metadata={"json": None})  #: what took its place
 
 
 class DiagnosisVerdict(Enum):
@@ -159,44 +128,25 @@ class DiagnosisVerdict(Enum):
 
 @dataclass(frozen=True, slots=True)
 class RopeChoice:
-    """The cable that the design asks for.
+    """The cable that the design asks for."""
 
-    Parameters
-    ----------
-    grade, size_id : str or None
-        None where no product holds.
-    diameter_m, max_tension_N : float
-        Of the product; NaN where none holds.
-    optimum_m, optimum_tension_N : float
-        Of the config's continuous family; NaN where it has no finite cable.
-    utilisation : float
-        Largest over allowable tension of the product; NaN where none holds.
-    """
-
-    grade: str | None
+    grade: str | None  #: None where no product holds
     size_id: str | None
-    diameter_m: float
+    diameter_m: float  #: of the product; NaN where none holds
     max_tension_N: float
-    optimum_m: float
+    optimum_m: float  #: of the config's continuous family; NaN where it has no finite cable
     optimum_tension_N: float
+    #: largest over allowable tension of the product; NaN where none holds
     utilisation: float = math.nan
 
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """What a given rope meets in the workspace: one that was chosen before, or hangs there now.
-
-    Parameters
-    ----------
-    max_tension_N : float
-        Its largest tension [N]; inf where it cannot hold a pose at all.
-    utilisation : float
-        Largest over allowable tension.
-    """
+    """What a given rope meets in the workspace: one that was chosen before, or hangs there now."""
 
     also_in_files = ("holds",)
-    max_tension_N: float
-    utilisation: float
+    max_tension_N: float  #: its largest tension [N]; inf where it cannot hold a pose at all
+    utilisation: float  #: largest over allowable tension
 
     @property
     def holds(self) -> bool:
@@ -218,7 +168,7 @@ class Diagnosis(checked.Shown):
         Effects that earned their place.
     given : tuple of Setting
         What was unknown from the start, with its values.
-    withdrawn : tuple of Withdrawn
+    withdrawn : tuple of RejectedEffect
         Effects that fitted but do not hold.
     skipped : tuple of (effect, reason)
         Effects that this data cannot show.
@@ -247,7 +197,7 @@ class Diagnosis(checked.Shown):
     imbalance : array (n_rows,) or None
         What the final model leaves out of balance, over the platform's weight; None where there are
         as many cables as degrees of freedom.
-    foretold_before, foretold_after : Foretold or None
+    foretold_before, foretold_after : ForwardError or None
         Pose and tensions from lengths alone, by the first and the last stage; None where no
         held-out row has all lengths.
     design_before, design_after : RopeChoice or None
@@ -273,7 +223,7 @@ class Diagnosis(checked.Shown):
     heldout: BoolArray
     findings: tuple[Finding, ...]
     given: tuple[Setting, ...]
-    withdrawn: tuple[Withdrawn, ...]
+    withdrawn: tuple[RejectedEffect, ...]
     skipped: tuple[tuple[str, str], ...]
     steps: tuple[Step, ...]
     stages: tuple[Stage, ...]
@@ -289,8 +239,8 @@ class Diagnosis(checked.Shown):
     doubts: tuple[str, ...] = ()
     not_tried: tuple[str, ...] = ()
     imbalance: FloatArray | None = None
-    foretold_before: Foretold | None = None
-    foretold_after: Foretold | None = None
+    foretold_before: ForwardError | None = None
+    foretold_after: ForwardError | None = None
     design_before: RopeChoice | None = None
     design_after: RopeChoice | None = None
     left_in: Whereabouts | None = None
@@ -304,7 +254,7 @@ class Diagnosis(checked.Shown):
     @property
     def strange_sessions(self) -> tuple[int, ...]:
         """Sessions that the model does not explain, while it explains others."""
-        over = {each.session: each.over(self.noise) for each in self.sessions}
+        over = {error.session: error.over(self.noise) for error in self.sessions}
         strange = tuple(number for number, ratio in over.items() if ratio > MOST_SCATTER)
         return strange if len(strange) < len(over) else ()
 
@@ -412,7 +362,9 @@ class Diagnosis(checked.Shown):
         rivals = (
             set.intersection(*(set(f.rivals) for f in self.findings)) if self.findings else set()
         )
-        return len(self.findings) > 2 and not rivals.isdisjoint((DISTORTION.id, FORCE.id))
+        return len(self.findings) > 2 and not rivals.isdisjoint(
+            (POSE_DISTORTION.id, PLATFORM_FORCE.id)
+        )
 
     @property
     def wrong_poses(self) -> list[int]:
@@ -452,7 +404,7 @@ class Diagnosis(checked.Shown):
     def has_no_rivals(self, finding: Finding) -> bool:
         """Tell whether all of the list were tried in place of a finding, and none is as good."""
         cut_short = f"rivals of {finding.effect.key}:"
-        return not (finding.rivals or any(what.startswith(cut_short) for what in self.not_tried))
+        return not (finding.rivals or any(part.startswith(cut_short) for part in self.not_tried))
 
     @property
     def is_positive(self) -> bool:
@@ -582,9 +534,9 @@ def _balance(imbalance: FloatArray | None) -> Json | None:
     """Return how far poses are from balance, over the weight, where cables let them sway."""
     if imbalance is None:
         return None
-    held = imbalance[~np.isnan(imbalance)]
+    finite = imbalance[~np.isnan(imbalance)]
     return {
-        "left_median": np.median(held) if held.size else None,
-        "left_largest": held.max() if held.size else None,
-        "rows_not_held": imbalance.size - held.size,
+        "left_median": np.median(finite) if finite.size else None,
+        "left_largest": finite.max() if finite.size else None,
+        "rows_not_held": imbalance.size - finite.size,
     }

@@ -1,28 +1,34 @@
-"""Which effects the data ask for: add the best while it earns its place, exchange, prune."""
+"""Which effects the data ask for: add the best while it earns its place, exchange, prune.
+
+Effects that are added one by one may start with one that suits the average of two, and need others
+to mend it. Slopes of all candidates at one place tell of every set of a few at little cost: which
+few effects promise most together.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise, product
 
 import numpy as np
 
-from designer.arrays import BoolArray
-from designer.diagnosis.drift import beside_drift
+from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.drift import gain_in_drift
 from designer.diagnosis.fit import (
     HUBER,
     Fit,
-    Reach,
+    LinearTrial,
+    StartingPoint,
     fit,
     huber,
-    in_reach,
     jacobian,
+    linear_trial,
     with_places,
 )
-from designer.diagnosis.look_ahead import LinearModel, View, best_sets
 from designer.diagnosis.problem import Problem
-from designer.diagnosis.statistics import SIGNIFICANCE, folds
+from designer.diagnosis.statistics import SIGNIFICANCE, folds, orthonormal, outside_span
 from designer.effects.effect import Effect, Setting
 from designer.progress import Pace
 
@@ -30,47 +36,34 @@ RIVAL_MARGIN = 9.0
 """Difference of penalised loss below which two effects count as equally good."""
 _PENALTY = 2.0
 """For each parameter, in units of the variance that is left: Akaike's information criterion."""
-_REACH = 0.25
+_PROMISE_SHARE = 0.25
 """Share of the best promise below which a candidate is not fitted: a linear step foretells the gain
 of a fit to some tens of per cent."""
-_FEWEST = 3
+_MIN_TRIALS = 3
 """Candidates that are fitted, whatever they promise: a report shows them."""
-_MOST_SETS = 6
+_MAX_SETS = 6
 """Sets of effects that are fitted of those that promise most."""
-_MOST_TOGETHER = 3
+_MAX_TOGETHER = 3
 """Cables whose effects are tried together: what is off with more of them has a cause in common."""
-_SAME = 0.5
+_TIE = 0.5
 """Difference of penalised loss that is none: laws that are one, seen from two sides."""
-_ACTS = 3.3
+_SIGNIFICANT_STD = 3.3
 """Standard deviations from doing nothing that one number in a thousand gets to by chance."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EffectTrial:
-    """One candidate added to the present model.
+    """One candidate added to the present model."""
 
-    Parameters
-    ----------
-    effect : Effect
-        The candidate.
-    fit : Fit
-        The model with it.
-    gain : float
-        What it takes off the robust loss over the rows for fitting, in units of the variance left,
-        and for as many independent readings as there are.
-    chance : float
-        Probability of such a gain by chance in any of the candidates of this round.
-    heldout_gain : float
-        The same gain summed over parts of the rows that each fit has not seen; NaN if not tried.
-    is_drift : bool
-        Whether a drift of the readings explains it as well; gain and chance are then beside that.
-    """
-
-    effect: Effect
-    fit: Fit
+    effect: Effect  #: the candidate
+    fit: Fit  #: the model with it
+    #: what it takes off the robust loss over the rows for fitting, in units of the variance left,
+    #: and for as many independent readings as there are
     gain: float
-    chance: float
+    chance: float  #: probability of such a gain by chance in any of the candidates of this round
+    #: the same gain summed over parts of the rows that each fit has not seen; NaN if not tried
     heldout_gain: float
+    #: whether a drift of the readings explains it as well; gain and chance are then beside that
     is_drift: bool = False
 
     def score(self, variance: float) -> float:
@@ -98,27 +91,15 @@ class EffectTrial:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Step:
-    """One round of the search.
+    """One round of the search."""
 
-    Parameters
-    ----------
-    trials : tuple of EffectTrial
-        All candidates that were fitted, best first.
-    added : Effect or None
-        The one that earned its place.
-    is_complete : bool
-        Whether there was time to try all.
-    passed_over : mapping of str to float
-        Candidates that were not fitted, with the gain that one linear step promised, best first.
-    instead : tuple of Effect
-        What takes the place of all that was found, this round's as well, as it does better
-        together; mostly empty.
-    """
-
-    trials: tuple[EffectTrial, ...]
-    added: Effect | None
-    is_complete: bool = True
+    trials: tuple[EffectTrial, ...]  #: all candidates that were fitted, best first
+    added: Effect | None  #: the one that earned its place
+    is_complete: bool = True  #: whether there was time to try all
+    #: candidates that were not fitted, with the gain that one linear step promised, best first
     passed_over: Mapping[str, float] = field(default_factory=dict)
+    #: what takes the place of all that was found, this round's as well, as it does better together;
+    #: mostly empty
     instead: tuple[Effect, ...] = ()
 
 
@@ -133,16 +114,16 @@ def _best(trials: Sequence[EffectTrial], order: Sequence[Effect]) -> list[Effect
     if best is None:
         return []
     # By the fit that has more to tell: what the best explains lasts in what a worse one leaves.
-    few = best.fit.inflation[best.effect.key]
+    inflation = best.fit.inflation[best.effect.key]
     close = [
         t
         for t in good
         if t.score(variance)
-        >= best.score(variance) - RIVAL_MARGIN * min(few, t.fit.inflation[t.effect.key])
+        >= best.score(variance) - RIVAL_MARGIN * min(inflation, t.fit.inflation[t.effect.key])
     ]
     # Of equal ones, the one that acts first.
     place = {effect.key: k for k, effect in enumerate(order)}
-    close.sort(key=lambda t: (-round(t.score(variance) / _SAME), place[t.effect.key]))
+    close.sort(key=lambda t: (-round(t.score(variance) / _TIE), place[t.effect.key]))
     by_numbers = sorted(close, key=lambda t: len(t.effect.parameters))
     set_up = [t for t in by_numbers if t.effect.cause == "setting_up"]
     return list(dict.fromkeys([*set_up[:1], *by_numbers[:1]]))
@@ -170,42 +151,18 @@ def _best_variance(trials: Sequence[EffectTrial]) -> float:
     return min((t.fit.variance for t in trials), default=1.0)
 
 
-def _acting_cables(effect: Effect, model: Fit) -> list[int]:
-    """Return the cables, from 1, whose own numbers of an effect do something for sure."""
-    (setting, at), *_ = (own for own in with_places(model.settings) if own[0].effect is effect)
-    numbers = zip(effect.parameters, model.std[at].tolist(), strict=True)
-    return [
-        cable
-        for cable, (p, std) in enumerate(numbers, start=1)
-        if f"_{cable}_" in p.name and abs(setting.values[p.name] - p.neutral) > _ACTS * std
-    ]
-
-
 @dataclass(eq=False)
 class Searcher:
-    """Searches one data set.
+    """Searches one data set."""
 
-    Parameters
-    ----------
-    problem : Problem
-        Data, model, noise.
-    candidates : sequence of Effect
-        In the order in which effects act.
-    given : sequence of Effect
-        Unknown from the start: always fitted, and never a finding.
-    rows : array (n_rows,) of bool
-        Rows for fitting.
-    progress : Pace, optional
-        Told what is being tried; where the time is spent, the search ends.
-    """
-
-    problem: Problem
-    candidates: Sequence[Effect]
-    given: Sequence[Effect]
-    rows: BoolArray
+    problem: Problem  #: data, model, noise
+    candidates: Sequence[Effect]  #: in the order in which effects act
+    given: Sequence[Effect]  #: unknown from the start: always fitted, and never a finding
+    rows: BoolArray  #: (n_rows,): rows for fitting
+    #: told what is being tried; where the time is spent, the search ends
     progress: Pace = field(default_factory=Pace)
     _unseen: dict[tuple[frozenset[str], str], float] = field(default_factory=dict)
-    _views: tuple[View, ...] = ()  # of all candidates, without any other
+    _views: tuple[StartingPoint, ...] = ()  # of all candidates, without any other
 
     def run(self) -> tuple[tuple[Step, ...], Fit, tuple[Effect, ...]]:
         """Add, exchange and prune until nothing changes, or a set of effects comes again.
@@ -214,7 +171,7 @@ class Searcher:
         """
         effects: list[Effect] = []
         steps: list[Step] = []
-        present = alone = self.fit(effects)
+        present = base_fit = self.fit(effects)
         visited: list[set[Effect]] = []
         while set(effects) not in visited:
             visited.append(set(effects))
@@ -234,16 +191,17 @@ class Searcher:
                 present = self.fit(effects, best[fewest].fit)
             before = effects
             if extended or not effects:  # else it was done when they were found
-                effects, present = self._looked_ahead(effects, present, alone)
+                effects, present = self._with_better_set(effects, present, base_fit)
             if trials:
                 instead = () if effects is before else tuple(effects)
                 steps.append(Step(tuple(trials), added, not is_over, passed_over, instead))
-        effects = self._parted(self._reconsidered(effects, present, steps), present)
-        effects = self._predicting(effects, present)
+        effects = self._with_better_members(effects, present, steps)
+        effects = self._split_into_parts(effects, present)
+        effects = self._without_useless(effects, present)
         return tuple(steps), self.fit(effects, present, thorough=True), tuple(effects)
 
-    def _looked_ahead(
-        self, effects: list[Effect], present: Fit, alone: Fit
+    def _with_better_set(
+        self, effects: list[Effect], present: Fit, base_fit: Fit
     ) -> tuple[list[Effect], Fit]:
         """Return other effects, no more than these or two, that together do better by a margin.
 
@@ -251,11 +209,11 @@ class Searcher:
         setting up come before physics, and few numbers before many.
         """
         excess = present.loss - present.n_data
-        is_explained = excess < _ACTS * math.sqrt(2.0 * present.n_data)
+        is_explained = excess < _SIGNIFICANT_STD * math.sqrt(2.0 * present.n_data)
         has_few_numbers = sum(map(_penalty, effects)) < RIVAL_MARGIN
         if is_explained and has_few_numbers:
             return effects, present
-        better = self._better_sets(effects, present, alone)
+        better = self._better_sets(effects, present, base_fit)
         if not better:
             return effects, present
         best = min(better, key=self._penalised)
@@ -270,11 +228,11 @@ class Searcher:
             return effects, present
         # What was found before comes first, in the order in which it was.
         together.sort(key=lambda e: effects.index(e) if e in effects else len(effects))
-        kept = self._pruned(together)
-        model = self.fit(kept, model)
+        pruned = self._pruned(together)
+        model = self.fit(pruned, model)
         is_better = self._penalised(model) < self._penalised(present)
-        if is_better and self._earn_their_places(kept, effects, model):
-            return kept, model
+        if is_better and self._earn_their_places(pruned, effects, model):
+            return pruned, model
         return effects, present
 
     def _earn_their_places(
@@ -291,17 +249,24 @@ class Searcher:
                 return False
         return True
 
-    def _better_sets(self, effects: Sequence[Effect], present: Fit, alone: Fit) -> list[Fit]:
+    def _better_sets(self, effects: Sequence[Effect], present: Fit, base_fit: Fit) -> list[Fit]:
         """Return fits of the sets that promise most, where they are better than the present one."""
         part = f"instead of {' and '.join(effect.key for effect in effects) or 'nothing'}"
         better = []
-        for promise in self._promising_sets(effects, present, alone):
+        is_used = self.problem.used(self.rows)
+        off, now = (self.problem.misfit(model.settings)[is_used] for model in (base_fit, present))
+        given_slopes = np.empty((len(off), 0))
+        if self.given:
+            given_slopes = jacobian(self.problem, self.given, base_fit.vector, nearly=True)[is_used]
+        weight = HUBER / np.maximum(np.abs(now), HUBER)
+        linear = LinearModel(self._views, off, given_slopes, weight)
+        for promise in best_sets(linear, _penalty, effects, max(2, len(effects)), _MAX_SETS):
             together = [setting.effect for setting in promise]
             if self.progress.is_over:
                 break
             self.progress(f"{part}: {' and '.join(effect.key for effect in together)}")
             every = self._sorted([*self.given, *together])
-            model = fit(self.problem, every, self.rows, (*alone.settings, *promise), anew=True)
+            model = fit(self.problem, every, self.rows, (*base_fit.settings, *promise), anew=True)
             margin = RIVAL_MARGIN * max(model.inflation[effect.key] for effect in together)
             gain = (self._penalised(present) - self._penalised(model)) / model.variance
             is_sure = all(model.is_plausible(e) and not model.is_faint(e) for e in together)
@@ -309,27 +274,21 @@ class Searcher:
                 better.append(model)
         return better
 
-    def _promising_sets(
-        self, effects: Sequence[Effect], present: Fit, alone: Fit
-    ) -> list[tuple[Setting, ...]]:
-        """Return the few sets of candidates that promise most, beside the present one."""
-        is_used = self.problem.used(self.rows)
-        off, now = (self.problem.misfit(model.settings)[is_used] for model in (alone, present))
-        known = np.empty((len(off), 0))
-        if self.given:
-            known = jacobian(self.problem, self.given, alone.vector, nearly=True)[is_used]
-        weight = HUBER / np.maximum(np.abs(now), HUBER)
-        linear = LinearModel(self._views, off, known, weight)
-        return best_sets(linear, _penalty, effects, max(2, len(effects)), _MOST_SETS)
-
     def _extended(
         self, effects: Sequence[Effect], trial: EffectTrial, trials: Sequence[EffectTrial]
     ) -> list[Effect]:
         """Return the effects with one more, exchanged and pruned."""
         self.progress(f"found {trial.effect.key}")
-        # What is worse alone is seldom better in the place of a member.
-        outsiders = [t.effect for t in trials[:8]]
-        return self._pruned(self._exchanged([*effects, trial.effect], trial.fit, outsiders))
+        extended = [*effects, trial.effect]
+        present = self.fit(extended, trial.fit)
+        # Greed errs at times: a member goes where an outsider is clearly better in its place. The
+        # newest was chosen among all; what is worse alone is seldom better in the place of another.
+        for k in range(len(effects)):
+            for outsider in trials[:8]:
+                extended, present = self._swapped(
+                    extended, present, k, outsider.effect, RIVAL_MARGIN
+                )
+        return self._pruned(extended)
 
     def fit(
         self,
@@ -354,15 +313,19 @@ class Searcher:
         promise may be no accident.
         """
         promised = self._promised(effects, present, part)
-        looks, least = len(promised), _REACH * max(promised.values(), default=0.0)
-        clear = [e for e in promised if _chance(promised[e] / _REACH, e, looks) < SIGNIFICANCE]
-        near = {e for e in clear if promised[e] >= least}
-        first = [e for k, e in enumerate(promised) if k < _FEWEST or e in near or e in earned]
+        looks, least = len(promised), _PROMISE_SHARE * max(promised.values(), default=0.0)
+        clear = [
+            e for e in promised if _chance(promised[e] / _PROMISE_SHARE, e, looks) < SIGNIFICANCE
+        ]
+        promising = {e for e in clear if promised[e] >= least}
+        shortlist = [
+            e for k, e in enumerate(promised) if k < _MIN_TRIALS or e in promising or e in earned
+        ]
         # What nothing is expected of is only shown: it is not looked for in far valleys.
         hopeful = {*clear, *earned}
-        trials = self._tried(effects, first, present, part, looks, hopeful)
+        trials = self._tried(effects, shortlist, present, part, looks, hopeful)
         trials = self._validated(effects, present, trials, looks)
-        rest = without([*promised], *(e.key for e in first))
+        rest = without([*promised], *(e.key for e in shortlist))
         if not (self.progress.is_over or any(trial.may_be_added for trial in trials)):
             further = [e for e in rest if e in clear]
             if further:
@@ -380,7 +343,7 @@ class Searcher:
         for effect in self._others(effects):
             self.progress(f"{part}: {effect.key} at first sight")
             is_late = self.progress.is_over
-            late = Reach(present.loss, present.loss)
+            late = LinearTrial(present.loss, present.loss)
             reaches[effect] = late if is_late else self._in_reach(effects, effect, present)
         if not effects:
             self._views = tuple(view for reach in reaches.values() for view in reach.views)
@@ -389,9 +352,9 @@ class Searcher:
         promised = {effect: reach.gain / variance for effect, reach in reaches.items()}
         return dict(sorted(promised.items(), key=lambda e: _penalty(e[0]) - e[1]))
 
-    def _in_reach(self, effects: Sequence[Effect], effect: Effect, present: Fit) -> Reach:
+    def _in_reach(self, effects: Sequence[Effect], effect: Effect, present: Fit) -> LinearTrial:
         every = self._sorted([*self.given, *effects, effect])
-        return in_reach(self.problem, every, self.rows, present, effect)
+        return linear_trial(self.problem, every, self.rows, present, effect)
 
     def _tried(
         self,
@@ -429,21 +392,20 @@ class Searcher:
             if settled or is_known or trial.chance >= SIGNIFICANCE:  # needs no proof
                 answer.append(trial)
                 continue
-            tested = self._beside_drift(trial, present, looks)
+            tested, gain = (
+                trial,
+                gain_in_drift(self.problem, present, trial.fit, trial.effect, self.rows),
+            )
+            if gain < trial.gain:  # no more than a drift of the readings leaves it
+                chance = _chance(gain, trial.effect, looks)
+                is_drift = chance >= SIGNIFICANCE
+                tested = replace(trial, gain=gain, chance=chance, is_drift=is_drift)
             if tested.chance < SIGNIFICANCE:
                 gain = self._unseen_loss(effects, present)
                 gain -= self._unseen_loss([*effects, trial.effect], trial.fit)
                 tested = replace(tested, heldout_gain=gain / trial.fit.variance)
             answer.append(tested)
         return answer
-
-    def _beside_drift(self, trial: EffectTrial, present: Fit, looks: int) -> EffectTrial:
-        """Return a trial with no more gain than a drift of the readings leaves it."""
-        gain = beside_drift(self.problem, present, trial.fit, trial.effect, self.rows)
-        if gain >= trial.gain:
-            return trial
-        chance = _chance(gain, trial.effect, looks)
-        return replace(trial, gain=gain, chance=chance, is_drift=chance >= SIGNIFICANCE)
 
     def rivals(
         self, effects: Sequence[Effect], effect: Effect, present: Fit, steps: Sequence[Step]
@@ -469,23 +431,23 @@ class Searcher:
         for rival in self.progress.each(f"rivals of {effect.key}", self._others(effects)):
             if effect.is_part_of(rival):  # which can do all that it does
                 continue
-            beside = without(rest, *rival.parts)  # it stands for all of them
-            is_hopeful = rival.key in good or len(beside) < len(rest)
+            outside_span = without(rest, *rival.parts)  # it stands for all of them
+            is_hopeful = rival.key in good or len(outside_span) < len(rest)
             if not is_hopeful and self._in_reach(rest, rival, lost).gain < least:
                 continue
             trials = [t.fit for step in steps for t in step.trials if t.effect.key == rival.key]
-            with_rest = {e.key for e in (*self.given, *beside, rival)}
+            with_rest = {e.key for e in (*self.given, *outside_span, rival)}
             fits = [m for m in trials if {s.effect.key for s in m.settings} == with_rest]
             if not fits:
                 last = dict.fromkeys([*trials[:1], *trials[-1:]])
-                fits = [self.fit([*beside, rival], present, anew=True)]
-                fits += [self.fit([*beside, rival], start) for start in last]
+                fits = [self.fit([*outside_span, rival], present, anew=True)]
+                fits += [self.fit([*outside_span, rival], start) for start in last]
             swapped = min(fits, key=lambda model: model.loss)
             if not swapped.is_plausible(rival):
                 continue
             suits = self._gap(swapped, present) / scale < RIVAL_MARGIN
             if not suits and rival.key in good:
-                gap = self._unseen_loss([*beside, rival], swapped)
+                gap = self._unseen_loss([*outside_span, rival], swapped)
                 gap -= self._unseen_loss(effects, present)
                 suits = gap / scale < RIVAL_MARGIN
             if suits:
@@ -506,17 +468,24 @@ class Searcher:
 
     def _groups(self, effect: Effect, present: Fit) -> list[tuple[Effect, ...]]:
         """Return effects, kind by kind, of the few cables that one for all cables acts on."""
-        acting = _acting_cables(effect, present)
-        if not 2 <= len(acting) <= min(_MOST_TOGETHER, len(effect.parameters) - 1):
+        ((setting, at),) = (p for p in with_places(present.settings) if p[0].effect is effect)
+        numbers = zip(effect.parameters, present.std[at].tolist(), strict=True)
+        acting = [  # cables, from 1, whose own numbers do something for sure
+            cable
+            for cable, (p, std) in enumerate(numbers, start=1)
+            if f"_{cable}_" in p.name
+            if abs(setting.values[p.name] - p.neutral) > _SIGNIFICANT_STD * std
+        ]
+        if not 2 <= len(acting) <= min(_MAX_TOGETHER, len(effect.parameters) - 1):
             return []
-        others = [
+        candidates = [
             e
             for e in self._others([s.effect for s in present.settings])
             if e.cable in acting and e.session == effect.session
             if not any(effect.id in p.part_of for p in e.parameters)  # which has the same number
         ]
-        kinds = dict.fromkeys(e.id for e in others)
-        groups = (tuple(e for e in others if e.id == kind) for kind in kinds)
+        kinds = dict.fromkeys(e.id for e in candidates)
+        groups = (tuple(e for e in candidates if e.id == kind) for kind in kinds)
         return [group for group in groups if len(group) == len(acting)]
 
     def _gap(self, swapped: Fit, present: Fit) -> float:
@@ -541,16 +510,6 @@ class Searcher:
             self._unseen[key] = loss
         return self._unseen[key]
 
-    def _exchanged(
-        self, effects: list[Effect], start: Fit, outsiders: Sequence[Effect]
-    ) -> list[Effect]:
-        """Replace a member by an outsider where that is clearly better: greed errs at times."""
-        present = self.fit(effects, start)
-        for k in range(len(effects) - 1):  # the newest was chosen among all
-            for outsider in outsiders:
-                effects, present = self._swapped(effects, present, k, outsider, RIVAL_MARGIN)
-        return effects
-
     def _swapped(
         self,
         effects: list[Effect],
@@ -572,7 +531,7 @@ class Searcher:
         better = (self._penalised(present) - self._penalised(model)) / model.variance
         return (swapped, model) if better > margin else (effects, present)
 
-    def _reconsidered(
+    def _with_better_members(
         self, effects: list[Effect], present: Fit, steps: Sequence[Step]
     ) -> list[Effect]:
         """Replace a member by what was as good when it was added, and is better beside them all.
@@ -599,15 +558,13 @@ class Searcher:
                     k = effects.index(member.effect)
                     less = len(member.effect.parameters) - len(trial.effect.parameters)
                     is_first = place(trial.effect) < place(member.effect)
-                    margin = (
-                        -RIVAL_MARGIN if less > 0 else -_SAME if is_first and not less else _SAME
-                    )
+                    margin = -RIVAL_MARGIN if less > 0 else -_TIE if is_first and not less else _TIE
                     effects, present = self._swapped(
                         effects, present, k, trial.effect, margin, anew=True
                     )
         return effects
 
-    def _parted(self, effects: list[Effect], present: Fit) -> list[Effect]:
+    def _split_into_parts(self, effects: list[Effect], present: Fit) -> list[Effect]:
         """Name the parts of a member in its place, if they do about as well together.
 
         Where they do better, also with values that are not plausible: then it is none of them.
@@ -638,7 +595,7 @@ class Searcher:
                 effects, present = rest, fewer
         return effects
 
-    def _predicting(self, effects: list[Effect], present: Fit) -> list[Effect]:
+    def _without_useless(self, effects: list[Effect], present: Fit) -> list[Effect]:
         """Leave out what no longer helps to predict rows that a fit has not seen."""
         loss = self._unseen_loss(effects, present) if len(effects) > 1 else 0.0
         for effect in list(effects):
@@ -656,3 +613,100 @@ class Searcher:
     def _sorted(self, effects: Sequence[Effect]) -> list[Effect]:
         place = {effect.key: k for k, effect in enumerate(self.candidates)}
         return sorted(effects, key=lambda effect: place.get(effect.key, -1))
+
+
+# Sets of effects that promise most together.
+
+_BEAM_WIDTH = 20
+"""Sets of each size that another effect is added to. Of pairs all are looked at."""
+
+
+class LinearModel:
+    r"""How a residual changes with any set of effects, to first order.
+
+    With r the residual without any of them, r_v that with effect v at its start, J the slopes and W
+    the weights, a set leaves min over x of \|√W (r + Σ (r_v - r) + J x)\|², beside what is known.
+
+    Views are all effects at all starts, over the same n readings; ``known`` (n, p) are slopes of
+    what is in the model anyway, and ``weight`` (n,) is that of each reading's square.
+    """
+
+    def __init__(
+        self,
+        views: Sequence[StartingPoint],
+        residual: FloatArray,
+        known: FloatArray,
+        weight: FloatArray,
+    ) -> None:
+        self.views = views
+        root = np.sqrt(weight)[:, None]
+        sizes = [np.maximum(np.linalg.norm(view.slopes, axis=0), 1e-300) for view in views]
+        slopes = [view.slopes / size for view, size in zip(views, sizes, strict=True)]
+        shifts = [residual, *(view.residual - residual for view in views)]
+        columns = root * np.column_stack([*shifts, *slopes])
+        columns = outside_span(orthonormal(root * known), columns)
+        self._products = columns.T @ columns
+        ends = len(shifts) + np.cumsum([0, *map(len, sizes)])
+        self._places = [np.arange(first, end) for first, end in pairwise(ends)]
+        self._sizes = sizes
+
+    @property
+    def nothing(self) -> float:
+        """What is left without any effect."""
+        return float(self._products[0, 0])
+
+    def step(self, members: Sequence[int]) -> tuple[float, FloatArray]:
+        """Return what a set of views leaves at least, and the step to there, as scaled inside."""
+        at = np.concatenate([self._places[k] for k in members])
+        shifted = np.array([0, *(1 + k for k in members)])
+        square = self._products[np.ix_(at, at)]
+        square.flat[:: len(at) + 1] += 1e-9 * (np.trace(square) + 1e-9)
+        pull = self._products[np.ix_(at, shifted)].sum(axis=1)
+        step = -np.linalg.solve(square, pull)
+        return float(self._products[np.ix_(shifted, shifted)].sum() + pull @ step), step
+
+    def settings(self, members: Sequence[int]) -> tuple[Setting, ...]:
+        """Return the values to which the step leads."""
+        ends = np.cumsum([len(self._sizes[k]) for k in members])[:-1]
+        pairs = zip(members, np.split(self.step(members)[1], ends), strict=True)
+        return tuple(self.views[k].moved(step / self._sizes[k]) for k, step in pairs)
+
+
+def best_sets(
+    model: LinearModel,
+    penalty: Callable[[Effect], float],
+    present: Collection[Effect],
+    max_size: int,
+    count: int,
+) -> list[tuple[Setting, ...]]:
+    """Return the sets of effects of which a linear step promises most.
+
+    Best first, after that step; without those present, and those that add one effect to them, which
+    is what a search tries anyway. Of the present ones a step may promise what no fit reaches.
+
+    A set of at most ``max_size`` effects is to be better by ``penalty`` for each; ``count`` sets
+    are returned at most.
+    """
+    effects = [view.setting.effect for view in model.views]
+    present_keys = frozenset(effect.key for effect in present)
+    best: dict[frozenset[str], tuple[float, tuple[int, ...]]] = {}
+    starts: list[tuple[int, ...]] = [()]
+    for size in range(1, max_size + 1):
+        reached: dict[tuple[int, ...], float] = {}
+        for members, k in product(starts, range(len(effects))):
+            keys = frozenset(effects[m].key for m in members)
+            more = tuple(sorted((*members, k)))
+            if effects[k].key in keys or more in reached:
+                continue
+            score = model.step(more)[0] + sum(penalty(effects[m]) for m in more)
+            reached[more] = score
+            name = keys | {effects[k].key}
+            best[name] = min((score, more), best.get(name, (np.inf, ())))
+        starts = sorted(reached, key=reached.__getitem__)[: None if size == 1 else _BEAM_WIDTH]
+    alternatives = [
+        promise
+        for name, promise in best.items()
+        if promise[0] < model.nothing
+        and not (present_keys <= name and len(name) <= len(present_keys) + 1)
+    ]
+    return [model.settings(members) for _, members in sorted(alternatives)[:count]]

@@ -64,7 +64,7 @@ def _median(residual: FloatArray) -> FloatArray:
     return np.where(empty, 0.0, np.nanmedian(np.where(empty, 0.0, residual), axis=0))
 
 
-def beside(basis: FloatArray, columns: FloatArray) -> FloatArray:
+def outside_span(basis: FloatArray, columns: FloatArray) -> FloatArray:
     """Return what columns hold beside the span of an orthonormal basis."""
     return np.asarray(columns - basis @ (basis.T @ columns))
 
@@ -127,18 +127,10 @@ _LONGEST = 0.98
 
 @dataclass(frozen=True, slots=True)
 class Lasting:
-    """Correlation of a residual between rows that follow one another: ``share · decay**k``.
+    """Correlation of a residual between rows that follow one another: ``share · decay**k``."""
 
-    Parameters
-    ----------
-    share : float
-        Share of the variance that lasts; 0 where rows are independent.
-    decay : float
-        What of it is left one row later.
-    """
-
-    share: float
-    decay: float
+    share: float  #: share of the variance that lasts; 0 where rows are independent
+    decay: float  #: what of it is left one row later
 
     @property
     def rows(self) -> float:
@@ -209,12 +201,8 @@ def lasting(residual: FloatArray) -> Lasting:
 def score_covariances(slopes: FloatArray, residual: FloatArray) -> Iterator[FloatArray]:
     """Yield the three estimates of the covariance of Jᵀr (n_parameters, n_parameters).
 
-    Parameters
-    ----------
-    slopes : array (n_rows, n_channels, n_parameters)
-        0 where nothing was fitted.
-    residual : array (n_rows, n_channels)
-        NaN where nothing was fitted.
+    Slopes (n_rows, n_channels, n_parameters) are 0, and the residual is NaN, where nothing was
+    fitted.
     """
     filled = np.nan_to_num(residual)
     rows = np.einsum("rcp,rc->rp", slopes, filled)

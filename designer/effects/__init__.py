@@ -1,4 +1,4 @@
-"""Physical effects that a model may lack: one file each, two small functions each.
+"""Physical effects that a model may lack, a file for each family.
 
 An effect changes the machine (exit points moved, a softer cable) or a reading (a scale, a bias).
 """

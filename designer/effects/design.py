@@ -27,25 +27,16 @@ def _unchanged(cable: Cable) -> Cable:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AsBuilt:
-    """The robot as built, and what its cables are there.
+    """The robot as built, and what its cables are there."""
 
-    Parameters
-    ----------
-    robot : Robot
-        With moved exit points, pulleys, tilt, mass.
-    change : callable
-        From a cable of the data sheet to that cable on this machine.
-    change_of_product : callable or None
-        The same for a rope of the catalogue, without what belongs to another rope; None where it
-        does not differ, see `designer.study.as_built_by`.
-    section_m : float or None
-        Diameter whose figures stand for a whole family where the effects do not leave it one, see
-        `material` [m].
-    """
-
-    robot: Robot
+    robot: Robot  #: with moved exit points, pulleys, tilt, mass
+    #: from a cable of the data sheet to that cable on this machine
     change: Callable[[Cable], Cable] = _unchanged
+    #: diameter whose figures stand for a whole family where the effects do not leave it one, see
+    #: `material` [m]
     section_m: float | None = None
+    #: the same for a rope of the catalogue, without what belongs to another rope; None where it
+    #: does not differ, see `designer.study.as_built_by`
     change_of_product: Callable[[Cable], Cable] | None = None
 
     @property

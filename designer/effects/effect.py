@@ -23,18 +23,13 @@ _UNIT_SUFFIX = re.compile(r"_(N_m2|m_per_N|m2|per_K|per_m|rad|kg|m|N|s)$")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Readings:
-    """What the sensors would show.
+    """What the sensors would show."""
 
-    Parameters
-    ----------
-    length_m, tension_N : array (n_rows, n_cables)
-        Lengths [m] and winch-side tensions [N]; NaN where the machine cannot hold the pose.
-    coordinates_off : array (n_rows, 6) or None
-        Of poses that were measured in part: measured less estimated, over the noise.
-    """
-
+    #: (n_rows, n_cables): lengths [m] and winch-side tensions [N]; NaN where the machine cannot
+    #: hold the pose
     length_m: FloatArray
-    tension_N: FloatArray
+    tension_N: FloatArray  #: (n_rows, n_cables)
+    #: (n_rows, 6): of poses that were measured in part: measured less estimated, over the noise
     coordinates_off: FloatArray | None = None
 
     @property
@@ -45,23 +40,13 @@ class Readings:
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """How large a parameter is, in the unit of its dimension.
+    """How large a parameter is, in the unit of its dimension."""
 
-    Parameters
-    ----------
-    typical : float
-        Size of a change worth looking at: scale of the fit and step of its slopes.
-    bounds : tuple of float
-        What the fit may try.
-    plausible : tuple of float
-        What an engineer would believe; a value outside is reported with a warning.
-    neutral : float or None
-        The value at which it does nothing, where that depends on the machine.
-    """
-
-    typical: float
-    bounds: tuple[float, float]
+    typical: float  #: size of a change worth looking at: scale of the fit and step of its slopes
+    bounds: tuple[float, float]  #: what the fit may try
+    #: what an engineer would believe; a value outside is reported with a warning
     plausible: tuple[float, float]
+    #: the value at which it does nothing, where that depends on the machine
     neutral: float | None = None
 
 
@@ -72,43 +57,24 @@ def any_machine(machine: Machine) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One number of an effect.
+    """One number of an effect."""
 
-    Parameters
-    ----------
-    name : str
-        As in config and result files, with its SI unit; ``{cable}`` stands for the number of a
-        cable, from 1, where there is one for each.
-    dimension : Dimension
-        What kind of quantity it is; the unit follows from it.
-    size : Size or callable
-        Its size, or a function that gives it for a machine.
-    neutral : float
-        The value at which the effect does nothing.
-    is_optional : bool
-        Whether a config may leave it out, which makes it neutral.
-    above, at_least : float or None
-        Limits beyond which it has no meaning.
-    can_have : callable
-        Tells whether it means anything on a machine; where not, it is left out.
-    part_of : tuple of str
-        Ids of effects with the same number: beside those, it is left out.
-    is_shape : bool
-        Whether it only says how the effect acts, such as a phase, and alone does nothing.
-    is_step_time : bool
-        Whether it is the time from which on the effect acts at once, so that it has no slope.
-    """
-
+    #: as in config and result files, with its SI unit; ``{cable}`` stands for the number of a
+    #: cable, from 1, where there is one for each
     name: str
-    dimension: Dimension
-    size: Size | Callable[[Machine], Size]
-    neutral: float = 0.0
-    is_optional: bool = False
-    above: float | None = None
+    dimension: Dimension  #: what kind of quantity it is; the unit follows from it
+    size: Size | Callable[[Machine], Size]  #: its size, or a function that gives it for a machine
+    neutral: float = 0.0  #: the value at which the effect does nothing
+    is_optional: bool = False  #: whether a config may leave it out, which makes it neutral
+    above: float | None = None  #: limits beyond which it has no meaning
     at_least: float | None = None
+    #: tells whether it means anything on a machine; where not, it is left out
     can_have: Callable[[Machine], bool] = any_machine
+    #: ids of effects with the same number: beside those, it is left out
     part_of: tuple[str, ...] = ()
+    #: whether it only says how the effect acts, such as a phase, and alone does nothing
     is_shape: bool = False
+    #: whether it is the time from which on the effect acts at once, so that it has no slope
     is_step_time: bool = False
 
     @property
@@ -197,87 +163,49 @@ StartsFrom = Callable[..., Sequence[Values]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Effect:
-    """A physical effect: as its file has it, or made for a machine by `on`.
+    """A physical effect: as its file has it, or made for a machine by `on`."""
 
-    Parameters
-    ----------
-    id : str
-        As in config and result files.
-    summary : str
-        What it is, in a few words; ``{cable}`` stands for the cable that it concerns.
-    law : str
-        How it changes machine or reading.
-    source : str
-        Where the law comes from.
-    parameters : tuple of Parameter
-        Its numbers.
-    on_machine, on_readings, on_poses : callable or None
-        Exactly one of them: ``on_machine(machine, values)`` returns the changed machine,
-        ``on_readings(readings, values, measured)`` the changed readings, ``on_poses(poses,
-        values)`` the poses of the platform where those are as they were measured.
-    cause : str
-        ``setting_up`` where it is no physics but an error in setting up the measurements, which is
-        to be thought of first; see `Cause`.
-    needs : frozenset of str
-        What the data must have, of `NEEDS`.
-    takes_cable : bool
-        Whether it concerns one cable, so that it may stand more than once; the law is then given
-        ``cable=``, its number from 1.
-    takes_machine : bool
-        Whether the law is given ``machine=``: with the readings of all rows the one that has all
-        other effects, else the one that the effect was made for.
-    can_have : callable
-        Tells whether a machine may have it at all.
-    starts : tuple of mapping
-        Values to start a fit from, beside the typical ones.
-    starts_from : callable or None
-        From the data and the residual without it (n_rows, 2 n_cables), in m and N: values to start
-        from.
-    looks : int
-        In how many places it looks for a start: its gain by chance is that many times as probable.
-    reaches_design : bool
-        Whether it changes what cable the machine needs.
-    of_rope : bool
-        Whether it is a property of the rope that is on the machine, which another rope would not
-        have; see `designer.study.as_built_by`.
-    follows_rows : bool
-        Whether it depends on the way that the cables went from row to row.
-    shifts_lengths : bool
-        Whether it leaves only changes of the lengths to go by, not the lengths themselves.
-    parts : tuple of str
-        Ids of effects that are named in its place where they do about as well together.
-    also_called : str
-        What ``measurements.unknown`` calls it for all cables together.
-    cable : int or None
-        The one cable it concerns, from 1, once it is made for a machine.
-    session : int or None
-        The one session of measurements it concerns, from 1; None for all.
-    """
-
-    id: str
-    summary: str
-    law: str
-    source: str
-    parameters: tuple[Parameter, ...]
+    id: str  #: as in config and result files
+    summary: str  #: what it is, in a few words; ``{cable}`` stands for the cable that it concerns
+    law: str  #: how it changes machine or reading
+    source: str  #: where the law comes from
+    parameters: tuple[Parameter, ...]  #: its numbers
+    #: exactly one of them: ``on_machine(machine, values)`` returns the changed machine,
+    #: ``on_readings(readings, values, measured)`` the changed readings, ``on_poses(poses, values)``
+    #: the poses of the platform where those are as they were measured
     on_machine: MachineChange | None = None
     on_readings: ReadingChange | None = None
     on_poses: PoseChange | None = None
+    #: ``setting_up`` where it is no physics but an error in setting up the measurements, which is
+    #: to be thought of first; see `Cause`
     cause: Cause = "physics"
-    needs: frozenset[str] = frozenset()
+    needs: frozenset[str] = frozenset()  #: what the data must have, of `NEEDS`
+    #: whether it concerns one cable, so that it may stand more than once; the law is then given
+    #: ``cable=``, its number from 1
     takes_cable: bool = False
+    #: whether the law is given ``machine=``: with the readings of all rows the one that has all
+    #: other effects, else the one that the effect was made for
     takes_machine: bool = False
-    can_have: Callable[[Machine], bool] = any_machine
-    starts: tuple[Values, ...] = ()
+    can_have: Callable[[Machine], bool] = any_machine  #: tells whether a machine may have it at all
+    starts: tuple[Values, ...] = ()  #: values to start a fit from, beside the typical ones
+    #: from the data and the residual without it (n_rows, 2 n_cables), in m and N: values to start
+    #: from
     starts_from: StartsFrom | None = None
+    #: in how many places it looks for a start: its gain by chance is that many times as probable
     looks: int = 1
-    reaches_design: bool = False
+    reaches_design: bool = False  #: whether it changes what cable the machine needs
+    #: whether it is a property of the rope that is on the machine, which another rope would not
+    #: have; see `designer.study.as_built_by`
     of_rope: bool = False
+    #: whether it depends on the way that the cables went from row to row
     follows_rows: bool = False
+    #: whether it leaves only changes of the lengths to go by, not the lengths themselves
     shifts_lengths: bool = False
+    #: ids of effects that are named in its place where they do about as well together
     parts: tuple[str, ...] = ()
-    also_called: str = ""
-    cable: int | None = None
-    session: int | None = None
+    also_called: str = ""  #: what ``measurements.unknown`` calls it for all cables together
+    cable: int | None = None  #: the one cable it concerns, from 1, once it is made for a machine
+    session: int | None = None  #: the one session of measurements it concerns, from 1; None for all
 
     @property
     def key(self) -> str:
@@ -313,7 +241,9 @@ class Effect:
 
     def parameters_for(self, n_cables: int) -> tuple[Parameter, ...]:
         """Return the parameters on a robot with so many cables."""
-        return tuple(own for parameter in self.parameters for own in parameter.of_cables(n_cables))
+        return tuple(
+            numbered for parameter in self.parameters for numbered in parameter.of_cables(n_cables)
+        )
 
     def is_part_of(self, effect: Effect) -> bool:
         """Tell whether another effect has all of its numbers."""
@@ -321,8 +251,8 @@ class Effect:
 
     def beside(self, ids: Collection[str]) -> Effect:
         """Return it without the numbers that effects of these ids have as well."""
-        own = tuple(p for p in self.parameters if not set(p.part_of) & set(ids))
-        return replace(self, parameters=own)
+        unshared = tuple(p for p in self.parameters if not set(p.part_of) & set(ids))
+        return replace(self, parameters=unshared)
 
     def on(self, machine: Machine) -> list[Effect]:
         """Return what a machine may have of it: the effect, one for each cable, or none."""
@@ -388,11 +318,50 @@ def per_cable(values: Values, name: str, n_cables: int) -> FloatArray:
     return np.array([values[name.format(cable=cable)] for cable in range(1, n_cables + 1)])
 
 
-def of_one(machine: Machine, shares: FloatArray | None, cable: int, scale: float) -> FloatArray:
-    """Return shares of all cables (n_cables,), ones before, with that of one cable scaled."""
-    scaled = np.ones(machine.robot.n_cables) if shares is None else np.array(shares)
-    scaled[cable - 1] *= scale
-    return scaled
+def is_in_space(machine: Machine) -> bool:
+    """Tell whether a robot is not planar."""
+    return not machine.robot.is_planar
+
+
+def can_turn(machine: Machine) -> bool:
+    """Tell whether a platform is a body, not a point mass."""
+    return not machine.robot.is_point_mass
+
+
+def moves_along(axis: int, machine: Machine) -> bool:
+    """Tell whether a robot moves along an axis, 0 to 2, which may be across its plane."""
+    return not machine.robot.is_planar or bool(abs(machine.robot.level[1, axis]) < 1.0 - 1e-9)
+
+
+def sized_by(
+    scale: Callable[[Machine], float],
+    typical: float,
+    bounds: tuple[float, float],
+    plausible: tuple[float, float],
+    neutral: float | None = None,
+) -> Callable[[Machine], Size]:
+    """Return a size in proportion to something of the machine, such as its weight."""
+
+    def size(machine: Machine) -> Size:
+        unit = scale(machine)
+        return Size(
+            typical * unit,
+            (bounds[0] * unit, bounds[1] * unit),
+            (plausible[0] * unit, plausible[1] * unit),
+            None if neutral is None else neutral * unit,
+        )
+
+    return size
+
+
+def weight_N(machine: Machine) -> float:
+    """Return the weight of the platform [N]."""
+    return machine.robot.weight_N
+
+
+def platform_extent_m(machine: Machine) -> float:
+    """Return the largest extent of the attachment points along an axis [m]; 0 of a point mass."""
+    return float(np.ptp(machine.robot.attachments_m, axis=0).max())
 
 
 def frame_size_m(machine: Machine) -> float:
@@ -402,18 +371,10 @@ def frame_size_m(machine: Machine) -> float:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pull:
-    """Of each cable in each row (n_rows, n_cables).
+    """Of each cable in each row (n_rows, n_cables)."""
 
-    Parameters
-    ----------
-    horizontal_N : array
-        Its horizontal force on the exit point [N].
-    mean_N : array
-        Its tension half way down [N].
-    """
-
-    horizontal_N: FloatArray
-    mean_N: FloatArray
+    horizontal_N: FloatArray  #: its horizontal force on the exit point [N]
+    mean_N: FloatArray  #: its tension half way down [N]
 
 
 def pull_of(machine: Machine, measured: Measured, tension_N: FloatArray) -> Pull:

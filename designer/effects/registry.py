@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from importlib import import_module
 
+from designer.effects import cables, load_cells, platform_loads, pulleys, setting_up, winches
 from designer.effects.effect import Effect, Setting
 from designer.model.machine import Machine
 
@@ -56,57 +56,51 @@ class KnownEffects:
         return KnownEffects(remaining, (*self.problems, problem))
 
 
-_IN_ORDER = (
-    "poses.SHIFT",
-    "poses.SCALE",
-    "poses.FRAME",
-    "poses.DISTORTION",
-    "poses.TOOL_POINT",
-    "points.EXIT",
-    "points.ATTACHMENT",
-    "base_tilt",
-    "pulley_radius",
-    "rope.MODULUS",
-    "rope.CABLE_MODULUS",
-    "rope.MASS",
-    "rope.CABLE_MASS",
-    "platform_mass",
-    "platform_force",
-    "load_step",
-    "points.CENTRE",
-    "platform_force.TURNING",
-    "wind_drag",
-    "bending_stiffness",
-    "mast_compliance",
-    "stiffening",
-    "thermal_expansion",
-    "creep",
-    "creep.ONE",
-    "cable_pulley_radius",
-    "pulley_inclination",
-    "encoder_on_rope",
-    "drum_layering",
-    "winch_scale.ALL",
-    "thermal_expansion.WINCH",
-    "tension_length",
-    "winch_scale",
-    "winch_scale.ZEROS",
-    "winch_scale.HOMED",
-    "drum_eccentricity",
-    "backlash",
-    "clock_offset",
-    "cell_at_platform",
-    "pulley_friction",
-    "tension_hysteresis",
-    "tension_gain",
-    "tension_gain.ALL",
-    "tension_gain.ZEROS",
-)
-"""Files of this folder, each with its ``EFFECT``, or with several, named after a dot."""
-
-EFFECTS: tuple[Effect, ...] = tuple(
-    getattr(import_module(f"designer.effects.{file}"), name or "EFFECT")
-    for file, _, name in (place.partition(".") for place in _IN_ORDER)
+EFFECTS: tuple[Effect, ...] = (
+    setting_up.POSE_OFFSET,
+    setting_up.POSE_SCALE,
+    setting_up.POSE_FRAME,
+    setting_up.POSE_DISTORTION,
+    setting_up.TOOL_POINT,
+    setting_up.ANCHOR_OFFSET,
+    setting_up.ATTACHMENT_OFFSET,
+    setting_up.BASE_TILT,
+    pulleys.PULLEY_RADIUS,
+    cables.ELASTIC_MODULUS,
+    cables.CABLE_MODULUS,
+    cables.LINEAR_MASS,
+    cables.CABLE_MASS,
+    platform_loads.PLATFORM_MASS,
+    platform_loads.PLATFORM_FORCE,
+    platform_loads.LOAD_STEP,
+    setting_up.CENTRE_OF_MASS_OFFSET,
+    platform_loads.PLATFORM_MOMENT,
+    platform_loads.WIND_DRAG,
+    cables.BENDING_STIFFNESS,
+    pulleys.MAST_COMPLIANCE,
+    cables.STIFFENING,
+    cables.THERMAL_EXPANSION,
+    cables.CREEP,
+    cables.CABLE_CREEP,
+    pulleys.CABLE_PULLEY_RADIUS,
+    pulleys.PULLEY_INCLINATION,
+    winches.ENCODER_ON_ROPE,
+    winches.DRUM_LAYERING,
+    winches.DRUM_SCALE,
+    cables.WINCH_EXPANSION,
+    winches.TENSION_LENGTH,
+    winches.WINCH_SCALE,
+    winches.LENGTH_OFFSET,
+    winches.WINCH_ZERO,
+    winches.DRUM_ECCENTRICITY,
+    winches.BACKLASH,
+    setting_up.CLOCK_OFFSET,
+    load_cells.CELL_AT_PLATFORM,
+    load_cells.PULLEY_FRICTION,
+    load_cells.TENSION_HYSTERESIS,
+    load_cells.TENSION_GAIN,
+    load_cells.TENSION_SCALE,
+    load_cells.TENSION_BIAS,
 )
 SHIPPED = KnownEffects(EFFECTS)
 """Our own effects, without those of plugins."""

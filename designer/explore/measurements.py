@@ -149,9 +149,8 @@ def diagnosis_answer(question: Question, progress: Callable[[str], None]) -> Dia
     InputError
         If the study has no measurements, or the data are not as they should be.
     """
-    from designer.report.diagnosis.quantity import quantities
     from designer.report.diagnosis.report import verdict
-    from designer.report.diagnosis.words import fitted_values
+    from designer.report.diagnosis.words import fitted_values, quantities
 
     study = question.study
     measured = read_measured(study)

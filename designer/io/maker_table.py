@@ -14,7 +14,7 @@ from designer.errors import Fault, InputError, visible
 from designer.grades.grade import MOST_SIZES
 from designer.grades.parts import DIMENSIONS
 from designer.io.pdf_table import pdf_rows
-from designer.measured.formats import cells_of
+from designer.measured.table import cells_of
 from designer.units import QuantityError, describe, read_quantity
 
 SIZE = "id"

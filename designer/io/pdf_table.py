@@ -14,7 +14,7 @@ from typing import Any, BinaryIO
 
 from designer.documents.opened import apart
 from designer.errors import InputError, one_line
-from designer.measured.formats import library_of
+from designer.measured.table import library_of
 
 _LARGEST_BYTES = 50_000_000
 _MOST_PAGES = 200

@@ -20,8 +20,7 @@ from designer.measured.assign import (
     length_names,
     unit_faults,
 )
-from designer.measured.formats import read_table
-from designer.measured.table import LogTable, RawColumn
+from designer.measured.table import LogTable, RawColumn, read_table
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.study import Study

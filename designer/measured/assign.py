@@ -1,4 +1,7 @@
-"""Finds out which column of a table is what to us, by the names that columns go by."""
+"""Finds out which column of a table is what to us, by the names that columns go by.
+
+Also what columns say of the platform's orientation, and of poses that were measured in part.
+"""
 
 from __future__ import annotations
 
@@ -7,8 +10,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.errors import Fault
 from designer.measured.table import LogTable, RawColumn
+from designer.model.coordinates import Coordinates
 from designer.model.measurements import POSES, LogColumn, Measurements
 from designer.spelling import did_you_mean
 from designer.study import Study
@@ -116,30 +124,18 @@ _IN_PART = f"; or 'unknown: [{POSES}]' with noise: {{position: …, rotation: �
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Assigned:
-    """The columns of a table by what they are to us.
+    """The columns of a table by what they are to us."""
 
-    Parameters
-    ----------
-    table : LogTable
-        The whole of it.
-    ours : mapping of str to RawColumn
-        Columns that we have a name for, by that name, in its unit.
-    covariates : mapping of str to RawColumn
-        All other columns with a name, by that.
-    awaited : set of str
-        Our names of columns that the config's map looks for in vain.
-    faults : list of Fault
-        Columns that are missing, or that stand for the wrong thing.
-    notes : list of str
-        Columns that were left out, and why.
-    """
-
-    table: LogTable
+    table: LogTable  #: the whole of it
+    #: columns that we have a name for, by that name, in its unit
     ours: dict[str, RawColumn] = field(default_factory=dict)
+    #: all other columns with a name, by that
     covariates: dict[str, RawColumn] = field(default_factory=dict)
+    #: our names of columns that the config's map looks for in vain
     awaited: set[str] = field(default_factory=set)
+    #: columns that are missing, or that stand for the wrong thing
     faults: list[Fault] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)  #: columns that were left out, and why
 
     def present(self, names: tuple[str, ...]) -> list[RawColumn]:
         """Return those of our columns that there are."""
@@ -307,3 +303,127 @@ def _missing_of(assigned: Assigned, names: tuple[str, ...], instead: str = "") -
             hint = did_you_mean(name, assigned.covariates)
             expected = f"a column of this name, or one mapped onto it in {_MAP}{instead}{hint}"
             yield assigned.table.fault(None, name, "is missing", expected)
+
+
+# Orientation.
+
+
+def euler_axes(columns: tuple[str, ...]) -> str:
+    """Return the axes of Euler angles as SciPy has them; empty for other columns."""
+    if not columns or columns in (ROTATION_VECTOR, QUATERNION):
+        return ""
+    _, sense, axes, _ = columns[0].split("_")
+    return axes.upper() if sense == "intrinsic" else axes
+
+
+def orientation(columns: tuple[str, ...], values: FloatArray) -> FloatArray:
+    """Return rotations from body to world (n_rows, 3, 3).
+
+    Parameters
+    ----------
+    columns : tuple of str
+        Our names of the columns: a rotation vector, a quaternion, or Euler angles, whose names say
+        the axes and whether these turn with the body (``intrinsic``) or not (``extrinsic``).
+    values : array (n_rows, 3 or 4)
+        The columns; angles in radians. Quaternions are scaled to unit length.
+    """
+    if columns == ROTATION_VECTOR:
+        rotation = Rotation.from_rotvec(values)
+    elif columns == QUATERNION:
+        rotation = Rotation.from_quat(np.roll(values, -1, axis=1))  # SciPy has w last
+    else:
+        rotation = Rotation.from_euler(euler_axes(columns), values)
+    return np.asarray(rotation.as_matrix(), dtype=np.float64)
+
+
+# Poses that were measured in part.
+
+_LEVEL_AXES, _LEVEL_NAMES = "xyz", tuple(f"euler_extrinsic_xyz_{k}" for k in (1, 2, 3))
+"""Whole orientations are compared by these, which have no singular place near level."""
+
+
+def exclude_coordinates(assigned: Assigned, measurements: Measurements) -> Iterator[Fault]:
+    """Take coordinates without a declared noise out of a log whose poses are unknown.
+
+    Yields what the others lack.
+    """
+    names = [
+        name
+        for name in assigned.ours
+        if (name in POSITION and measurements.position_noise_m is None)
+        or (is_rotation(name) and measurements.rotation_noise_rad is None)
+    ]
+    for name in names:
+        del assigned.ours[name]
+    if names:
+        assigned.notes.append(f"{', '.join(names)} left out: {POSES} are said to be unknown")
+    rotations = [name for name in assigned.ours if is_rotation(name)]
+    for kind, noise, present, example in (
+        ("position", measurements.position_noise_m, assigned.present(POSITION), POSITION[2]),
+        ("rotation", measurements.rotation_noise_rad, rotations, "euler_intrinsic_zyx_2"),
+    ):
+        if noise is not None and not present:
+            problem = f"has no coordinate that measurements.noise.{kind} is the noise of"
+            expected = f"a column such as {example}, or one mapped onto it; or no such noise"
+            yield assigned.table.fault(None, "", problem, expected)
+    form = assigned.rotation
+    if set(rotations) - set(form):
+        problem = f"the orientation is given in two forms, with {' and '.join(rotations)}"
+        yield assigned.table.fault(None, "", problem, "one; the columns of the other ignored")
+    elif form and not _may_be_in_part(form):
+        yield from _half_orientations(assigned, form)
+
+
+def coordinates_of(
+    assigned: Assigned, measurements: Measurements, mask: BoolArray
+) -> Coordinates | None:
+    """Return what was measured of poses in part, in some rows (n_rows,); None for nothing."""
+    form = assigned.rotation
+    if assigned.ours.keys().isdisjoint((*POSITION, *form)):
+        return None
+    position, angles = _side_by_side(assigned, POSITION, mask), _side_by_side(assigned, form, mask)
+    axes, names = euler_axes(form), form
+    if not _may_be_in_part(form):
+        angles, axes, names = _level_angles(form, angles), _LEVEL_AXES, _LEVEL_NAMES
+    noise = [measurements.position_noise_m or 1.0] * 3
+    noise += [measurements.rotation_noise_rad or 1.0] * 3
+    values = frozen_array(np.hstack([position, angles]))
+    return Coordinates((*POSITION, *names), values, axes, frozen_array(noise))
+
+
+def _may_be_in_part(form: tuple[str, ...]) -> bool:
+    """Tell whether each angle means something alone: about three different axes."""
+    return len(set(euler_axes(form))) == 3
+
+
+def _half_orientations(assigned: Assigned, form: tuple[str, ...]) -> Iterator[Fault]:
+    table = assigned.table
+    expected = "all of it, or angles that count alone, such as euler_intrinsic_zyx_2 and …_3"
+    missing = [name for name in form if name not in assigned.ours]
+    for name in missing:
+        yield table.fault(None, name, "is missing", expected)
+    empty = np.isnan(_side_by_side(assigned, form, np.ones(table.n_rows, dtype=np.bool_)))
+    rows = np.flatnonzero(empty.any(axis=1) & ~empty.all(axis=1))
+    if not missing:
+        halves = (
+            table.fault(int(row), form[0], "has half an orientation", expected) for row in rows
+        )
+        yield from table.first_few(halves, len(rows), "half orientations")
+
+
+def _side_by_side(assigned: Assigned, names: tuple[str, ...], mask: BoolArray) -> FloatArray:
+    """Return columns side by side (n_kept, n_names), at least three; NaN where there is none."""
+    values = np.full((assigned.table.n_rows, max(len(names), 3)), np.nan)
+    for k, name in enumerate(names):
+        if name in assigned.ours:
+            values[:, k] = assigned.ours[name].values
+    return values[mask]
+
+
+def _level_angles(form: tuple[str, ...], values: FloatArray) -> FloatArray:
+    angles = np.full((len(values), 3), np.nan)
+    whole = ~np.isnan(values).any(axis=1)
+    if whole.any():
+        rotation = Rotation.from_matrix(orientation(form, values[whole]))
+        angles[whole] = rotation.as_euler(_LEVEL_AXES)
+    return angles

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,28 +20,27 @@ from designer.measured.assign import (
     Assigned,
     assign,
     complete,
+    coordinates_of,
+    exclude_coordinates,
     length_names,
+    orientation,
     tension_names,
 )
-from designer.measured.formats import is_bag, read_bag, read_table
-from designer.measured.in_part import coordinates_of, set_aside
-from designer.measured.join import joined
-from designer.measured.joined_sessions import one_after_the_other
-from designer.measured.orientation import orientation
 from designer.measured.rows import (
     EPOCH_S,
     Rows,
     cell_faults,
     is_numeric,
+    joined,
     thinned,
     usable_rows,
     utc,
 )
 from designer.measured.sense import sense_faults, unit_faults
-from designer.measured.table import LogTable
+from designer.measured.table import LogTable, is_bag, read_bag, read_table
 from designer.model.measured_data import KINDS, Measured
 from designer.model.measurements import Measurements
-from designer.model.robot import Poses, Robot
+from designer.model.robot import Poses
 from designer.study import Study
 
 MOST_FAULTS = 100
@@ -72,7 +71,7 @@ def read_measured(study: Study) -> Measured:
         wrong_cells = [fault for part in parts for fault in cell_faults(part)]
         assigned = joined(parts, settled=measurements.settled)
         if not measurements.has_poses:
-            assigned.faults.extend(set_aside(assigned, measurements))
+            assigned.faults.extend(exclude_coordinates(assigned, measurements))
         complete(assigned, study, measurements)
         rows = usable_rows(assigned, study.robot.n_cables, measurements)
         faults = [*assigned.table.faults, *assigned.faults, *wrong_cells]
@@ -81,7 +80,13 @@ def read_measured(study: Study) -> Measured:
     table = assigned.table
     rows = thinned(rows, settled=measurements.settled)
     if measurements.has_poses:
-        poses = _poses(assigned, rows.kept, is_point_mass=study.robot.is_point_mass)
+        position = _stacked(assigned, POSITION, rows.kept)
+        poses = Poses.at(position)
+        if not study.robot.is_point_mass:
+            rotation = orientation(
+                assigned.rotation, _stacked(assigned, assigned.rotation, rows.kept)
+            )
+            poses = Poses(frozen_array(position), frozen_array(rotation))
         has_moved = np.ptp(poses.position_m, axis=0).max() > 1e-6
         has_turned = poses.rotation.ndim > 2 and np.ptp(poses.rotation, axis=0).max() > 1e-6
         if not has_moved and not has_turned:
@@ -93,8 +98,7 @@ def read_measured(study: Study) -> Measured:
     if not measurements.has_poses:
         coordinates = coordinates_of(assigned, measurements, rows.kept)
         measured = replace(measured, has_poses=False, coordinates=coordinates)
-        _refuse_without_spare_readings(study.robot, measured, table)
-        _refuse(list(_missing_noise(study, measurements, measured)))
+        _refuse_unsettled_poses(study, measurements, measured, table)
         return measured
     suspects = (*(effect.id for effect in study.effects), *measurements.unknown)
     effects = study.known_effects.effects
@@ -110,13 +114,15 @@ def _of_sessions(study: Study, measurements: Measurements) -> Measured:
     faults: list[Fault] = []
     for number in range(1, len(measurements.sessions) + 1):
         effects = (*study.effects, *study.effects_of_session(number))
-        own = replace(study, measurements=measurements.of_session(number), effects=effects)
+        session_study = replace(
+            study, measurements=measurements.of_session(number), effects=effects
+        )
         try:
-            parts.append(read_measured(own))
+            parts.append(read_measured(session_study))
         except InputError as error:
             faults.extend(error.faults)
     _refuse(faults)
-    return one_after_the_other(parts)
+    return concatenate_sessions(parts)
 
 
 def _refuse(faults: list[Fault]) -> None:
@@ -141,14 +147,6 @@ def _tables(path: Path, study: Study, measurements: Measurements) -> list[LogTab
     raise InputError([study.source.fault(measurements.place, problem, expected)])
 
 
-def _poses(assigned: Assigned, mask: BoolArray, *, is_point_mass: bool) -> Poses:
-    position = _stacked(assigned, POSITION, mask)
-    if is_point_mass:
-        return Poses.at(position)
-    values = _stacked(assigned, assigned.rotation, mask)
-    return Poses(frozen_array(position), frozen_array(orientation(assigned.rotation, values)))
-
-
 def _stacked(assigned: Assigned, names: tuple[str, ...], mask: BoolArray) -> FloatArray:
     """Return columns side by side (n_kept, n_names), NaN for those that there are not."""
     empty = np.full(assigned.table.n_rows, np.nan)
@@ -156,8 +154,14 @@ def _stacked(assigned: Assigned, names: tuple[str, ...], mask: BoolArray) -> Flo
     return np.stack(columns, axis=1)[mask]
 
 
-def _refuse_without_spare_readings(robot: Robot, measured: Measured, table: LogTable) -> None:
-    """Refuse rows that readings only just settle: nothing is left to test the model with."""
+def _refuse_unsettled_poses(
+    study: Study, measurements: Measurements, measured: Measured, table: LogTable
+) -> None:
+    """Refuse rows without poses that readings only just settle, or that lack a noise.
+
+    Nothing is left then to test the model with, or to weigh lengths against tensions with.
+    """
+    robot = study.robot
     if not robot.has_enough_cables:
         problem = "poses of a platform with fewer cables than degrees of freedom cannot be told"
         raise InputError.at(table.name, problem, "measured poses")
@@ -172,16 +176,18 @@ def _refuse_without_spare_readings(robot: Robot, measured: Measured, table: LogT
         problem = f"rows have at most {n_readings} readings, for {n_unknowns} unknowns: {unknown}"
         expected = f"more than {n_unknowns}, so lengths and tensions; or measured poses"
         raise InputError.at(table.name, problem, expected)
-
-
-def _missing_noise(study: Study, measurements: Measurements, measured: Measured) -> Iterator[Fault]:
-    """Yield what weighs a kind of reading against the other in the poses, and is not declared."""
-    for kind in KINDS:
-        has_any = np.isfinite(kind.of(measured)).any()
-        if has_any and kind.name not in measurements.declared_noise:
-            problem = f"is missing, and weighs {kind.name}s where poses are unknown"
-            expected = "a standard deviation of each kind of reading"
-            yield study.source.fault(f"measurements.noise.{kind.name}", problem, expected)
+    expected = "a standard deviation of each kind of reading"
+    _refuse(
+        [
+            study.source.fault(
+                f"measurements.noise.{kind.name}",
+                f"is missing, and weighs {kind.name}s where poses are unknown",
+                expected,
+            )
+            for kind in KINDS
+            if np.isfinite(kind.of(measured)).any() and kind.name not in measurements.declared_noise
+        ]
+    )
 
 
 def _measured(
@@ -313,3 +319,67 @@ def _filled(values: FloatArray, time: FloatArray | None, name: str, notes: list[
     rows = f"{count} row" + "s" * (count != 1)
     notes.append(f"{name} is missing in {rows} and taken from those around")
     return frozen_array(np.interp(place, place[~missing], values[~missing]))
+
+
+# Sessions.
+
+
+def concatenate_sessions(sessions: Sequence[Measured]) -> Measured:
+    """Return the rows of all sessions, of measured poses.
+
+    Their times follow one another, and so do the numbers of their rows. What is not recorded in
+    every session is left out, with a note.
+    """
+    counts = [part.n_rows for part in sessions]
+    firsts = np.cumsum([0, *(part.row_numbers[-1] for part in sessions[:-1])]).tolist()
+    notes = [
+        f"row 1 of session {number} is counted as row {first + 1}"
+        for number, first in enumerate(firsts[1:], start=2)
+    ]
+    recorded: list[set[str]] = [{*part.columns, *part.covariates} for part in sessions]
+    if missing := sorted(recorded[0].union(*recorded) - recorded[0].intersection(*recorded)):
+        notes.append(f"left out, since not every session has them: {', '.join(missing)}")
+    for number, part in enumerate(sessions, start=1):
+        notes += [f"session {number}: {note}" for note in part.notes]
+    shared = [k for k in sessions[0].covariates if all(k in part.covariates for part in sessions)]
+    thinned = [f"session {k}: {part.thinned}" for k, part in enumerate(sessions, 1) if part.thinned]
+    rotations = [
+        np.broadcast_to(part.poses.rotation, (part.n_rows, 3, 3))
+        for part in sessions
+        if part.poses.rotation.ndim > 2
+    ]
+    positions = np.concatenate([part.poses.position_m for part in sessions])
+    return Measured(
+        Poses(positions, np.concatenate(rotations)) if rotations else Poses.at(positions),
+        np.concatenate([part.length_m for part in sessions]),
+        np.concatenate([part.tension_N for part in sessions]),
+        settled=sessions[0].settled,
+        time_s=_times_of(sessions),
+        temperature_C=_concatenated([part.temperature_C for part in sessions]),
+        wind_m_per_s=_concatenated([part.wind_m_per_s for part in sessions]),
+        covariates={k: np.concatenate([part.covariates[k] for part in sessions]) for k in shared},
+        row_numbers=np.concatenate(
+            [part.row_numbers + n for part, n in zip(sessions, firsts, strict=True)]
+        ),
+        notes=tuple(notes),
+        thinned="; ".join(thinned),
+        sha256=", ".join(part.sha256 for part in sessions),
+        session=np.repeat(np.arange(1, len(sessions) + 1), counts),
+    )
+
+
+def _concatenated(columns: Sequence[FloatArray | None]) -> FloatArray | None:
+    present = [values for values in columns if values is not None]
+    return np.concatenate(present) if len(present) == len(columns) else None
+
+
+def _times_of(sessions: Sequence[Measured]) -> FloatArray | None:
+    """Return times that go on from session to session, a mean step between two of them."""
+    times: list[FloatArray] = []
+    for part in sessions:
+        if part.time_s is None:
+            return None
+        step = float(np.ptp(part.time_s)) / max(part.n_rows - 1, 1)
+        shift = times[-1][-1] + step - part.time_s[0] if times else 0.0
+        times.append(part.time_s + shift)
+    return np.concatenate(times)

@@ -1,17 +1,30 @@
-"""Which rows of a table can be used, and what is wrong in the others."""
+"""Which rows of a table can be used, what is wrong in the others, and rows of several files as one.
+
+Files of one machine, each with its own rate, are joined by their times.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from pathlib import Path
 
 import numpy as np
 
-from designer.arrays import BoolArray, IntArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.errors import Fault
-from designer.measured import assign
+from designer.measured.assign import (
+    POSITION,
+    TIME_NAME,
+    Assigned,
+    dimension_of,
+    is_rotation,
+    length_names,
+    tension_names,
+)
 from designer.measured.table import MOST_ALIKE, LogTable, RawColumn, is_number
 from designer.model.measurements import POSES, Measurements
 from designer.spelling import in_runs
@@ -45,24 +58,12 @@ _BOUNDS = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rows:
-    """The rows of a table that can be used.
+    """The rows of a table that can be used."""
 
-    Parameters
-    ----------
-    kept : array (n_rows,) of bool
-        Those with a pose and at least one reading.
-    faults : list of Fault
-        Rows with half a pose, without their time, or out of order; too few rows.
-    notes : list of str
-        Rows that were left out, and why.
-    thinned : str
-        Which of a long log are used, in words; empty where all are.
-    """
-
-    kept: BoolArray
-    faults: list[Fault]
-    notes: list[str]
-    thinned: str = ""
+    kept: BoolArray  #: (n_rows,): those with a pose and at least one reading
+    faults: list[Fault]  #: rows with half a pose, without their time, or out of order; too few rows
+    notes: list[str]  #: rows that were left out, and why
+    thinned: str = ""  #: which of a long log are used, in words; empty where all are
 
 
 def is_numeric(column: RawColumn) -> bool:
@@ -70,14 +71,14 @@ def is_numeric(column: RawColumn) -> bool:
     return column.n_numbers > 0 and column.n_numbers >= column.n_texts
 
 
-def cell_faults(assigned: assign.Assigned) -> list[Fault]:
+def cell_faults(assigned: Assigned) -> list[Fault]:
     """Return what is wrong in single cells: texts and numbers beyond all bounds."""
     numeric = [("", column) for column in assigned.covariates.values() if is_numeric(column)]
     columns = [*assigned.ours.items(), *numeric]
     faults: list[Fault] = []
     total = 0
     for name, column in columns:
-        dimension = assign.dimension_of(name) or NUMBER  # a covariate has no name of ours
+        dimension = dimension_of(name) or NUMBER  # a covariate has no name of ours
         low, high = _BOUNDS.get(dimension, (-_LARGEST_NUMBER, _LARGEST_NUMBER))
         rows = np.flatnonzero((column.values < low) | (column.values > high))
         total += len(rows)
@@ -94,27 +95,20 @@ def cell_faults(assigned: assign.Assigned) -> list[Fault]:
             cell.row, column.name, f"has the time {describe(cell.text)}", "a number"
         )
         for name, column in assigned.ours.items()
-        if name != assign.TIME_NAME and (cell := column.first_time)
+        if name != TIME_NAME and (cell := column.first_time)
     ]
     return [*_text_faults(assigned, [column for _, column in columns]), *wild]
 
 
-def usable_rows(assigned: assign.Assigned, n_cables: int, measurements: Measurements) -> Rows:
+def usable_rows(assigned: Assigned, n_cables: int, measurements: Measurements) -> Rows:
     """Return which rows have a pose and a reading.
 
-    Parameters
-    ----------
-    assigned : Assigned
-        The table with its columns assigned; some may be missing, which is not told again.
-    n_cables : int
-        Number of cables of the robot.
-    measurements : Measurements
-        Whether poses are asked for, and rows at rest, which may have the same time.
+    Columns that are missing are not told again.
     """
     every_row = np.ones(assigned.table.n_rows, dtype=np.bool_)
     has_pose, faults = _with_pose(assigned) if measurements.has_poses else (every_row, [])
     has_reading = np.ones_like(has_pose)
-    if readings := assigned.present(assign.length_names(n_cables) + assign.tension_names(n_cables)):
+    if readings := assigned.present(length_names(n_cables) + tension_names(n_cables)):
         has_reading = ~np.all([np.isnan(column.values) for column in readings], axis=0)
     is_usable = has_pose & has_reading
     notes = [
@@ -122,7 +116,7 @@ def usable_rows(assigned: assign.Assigned, n_cables: int, measurements: Measurem
         for left_out, lack in ((~has_pose, "a pose"), (has_pose & ~has_reading, "any reading"))
         if left_out.any()
     ]
-    if time := assigned.ours.get(assign.TIME_NAME):
+    if time := assigned.ours.get(TIME_NAME):
         faults += time_faults(assigned.table, time, is_usable, settled=measurements.settled)
     if is_usable.sum() < FEWEST_ROWS:
         total = assigned.table.n_rows
@@ -154,13 +148,13 @@ def thinned(rows: Rows, *, settled: bool) -> Rows:
     return replace(rows, kept=mask, notes=[*rows.notes, text], thinned=text)
 
 
-def _text_faults(assigned: assign.Assigned, columns: list[RawColumn]) -> list[Fault]:
+def _text_faults(assigned: Assigned, columns: list[RawColumn]) -> list[Fault]:
     with_text = [column for column in columns if column.n_texts]
     faults = []
     for column in with_text:
         for cell in column.texts:
             expected = "a number, or nothing where there is none"
-            if column is assigned.ours.get(assign.TIME_NAME):
+            if column is assigned.ours.get(TIME_NAME):
                 expected = "a number, or a time such as 2026-05-03T10:00:00.5Z"
             if "," in cell.text and is_number(cell.text.replace(",", "")):
                 expected = "a number with a decimal point and without commas"
@@ -170,10 +164,10 @@ def _text_faults(assigned: assign.Assigned, columns: list[RawColumn]) -> list[Fa
     return assigned.table.first_few(faults, total, "cells with a text")
 
 
-def _with_pose(assigned: assign.Assigned) -> tuple[BoolArray, list[Fault]]:
+def _with_pose(assigned: Assigned) -> tuple[BoolArray, list[Fault]]:
     """Return which rows have a pose, and the faults of those that have half of one."""
     table = assigned.table
-    columns = assigned.present((*assign.POSITION, *assigned.rotation)) if table.n_rows else []
+    columns = assigned.present((*POSITION, *assigned.rotation)) if table.n_rows else []
     empty = [column for column in columns if column.is_empty]
     faults = [table.fault(None, column.name, "is empty", "a pose in each row") for column in empty]
     filled = [column for column in columns if not column.is_empty and not column.n_texts]
@@ -205,18 +199,18 @@ def time_faults(
     for unit, (called, factor) in _SMALL_UNITS.items():
         if len(rows) and EPOCH_S <= values[0] / factor < 100.0 * EPOCH_S:
             problem = f"has {values[0]:.4g} s, as if it were {called} since 1970"
-            expected = f"seconds, or {{to: {assign.TIME_NAME}, unit: {unit}}}"
+            expected = f"seconds, or {{to: {TIME_NAME}, unit: {unit}}}"
             yield table.fault(int(rows[0]), time.name, problem, f"{expected} in {_MAP}")
             return
     if len(rows) and np.ptp(values) > _LONGEST_LOG_S:
         problem = f"spans {np.ptp(values):.4g} s, which is more than ten years"
-        expected = f"seconds, or another unit as {{to: {assign.TIME_NAME}, unit: ns}} in {_MAP}"
+        expected = f"seconds, or another unit as {{to: {TIME_NAME}, unit: ns}} in {_MAP}"
         yield table.fault(None, time.name, problem, expected)
         return
     beyond = np.flatnonzero((values < _DATES_S[0]) | (values > _DATES_S[1]))
     if len(beyond) and (values[0] >= EPOCH_S or time.first_time):
         problem = f"has {values[beyond[0]]:.4g} s since 1970, which is no date"
-        expected = f"the years 1 to 9999, or another unit as {{to: {assign.TIME_NAME}, unit: ns}}"
+        expected = f"the years 1 to 9999, or another unit as {{to: {TIME_NAME}, unit: ns}}"
         yield table.fault(int(rows[beyond[0]]), time.name, problem, f"{expected} in {_MAP}")
         return
     if not settled and len(rows) and np.ptp(values) == 0.0:
@@ -251,3 +245,94 @@ def _row_list(rows: IntArray) -> str:
     runs = in_runs(rows)
     more = ["…"] * (len(runs) > MOST_ALIKE)
     return f"row{'s' * (len(rows) != 1)} {', '.join(runs[:MOST_ALIKE] + more)}"
+
+
+# Files joined by their times.
+
+_REACH, _GAP = 0.75, 10.0
+"""How far a sample is used, in usual steps of its file: at rest, when the next should have come
+before; in motion, between two that are not too far apart to go straight from one to the other."""
+
+
+def joined(parts: Sequence[Assigned], *, settled: bool) -> Assigned:
+    """Return the table of the file with the positions, with the columns of the others.
+
+    Of poses at rest, the nearest sample in time, since the platform moves between them; of a
+    motion, the straight line between the samples before and after.
+    """
+    first = next((part for part in parts if not part.ours.keys().isdisjoint(POSITION)), parts[0])
+    further = [part for part in parts if part is not first]
+    if not further:
+        return first
+    for part in parts:
+        time = part.ours.get(TIME_NAME)
+        if time is None:
+            expected = "one in each file, or a column mapped onto it in measurements.columns"
+            problem = "is missing, and joins the files"
+            first.faults.append(part.table.fault(None, TIME_NAME, problem, expected))
+        else:
+            every_row = np.ones(part.table.n_rows, dtype=np.bool_)
+            first.faults.extend(time_faults(part.table, time, every_row, settled=True))
+    if first.faults or any(part.faults or part.table.faults for part in further):
+        first.faults.extend(
+            fault for part in further for fault in (*part.table.faults, *part.faults)
+        )
+        first.awaited.update(name for part in further for name in (*part.ours, *part.awaited))
+        return first
+    for part in further:
+        _join_columns(first, part, settled=settled)
+    digests = "".join(part.table.sha256 for part in parts)
+    sha256 = hashlib.sha256(digests.encode()).hexdigest()
+    return replace(first, table=replace(first.table, sha256=sha256))
+
+
+def _join_columns(first: Assigned, part: Assigned, *, settled: bool) -> None:
+    """Give the columns of another file to the first, at its times."""
+    first.notes.extend(part.notes)
+    time, part_time = first.ours[TIME_NAME].values, part.ours[TIME_NAME].values
+    names = {column.name for column in first.table.columns}
+    for name, column in part.ours.items():
+        if name == TIME_NAME:
+            continue
+        if name in first.ours:
+            problem = f"{first.table.name} has {name} as well"
+            first.faults.append(part.table.fault(None, column.name, problem, "it in one file"))
+        elif is_rotation(name) and not settled:
+            problem = f"is an orientation, and the positions are in {first.table.name}"
+            expected = "both in one file: angles are not interpolated"
+            first.faults.append(part.table.fault(None, column.name, problem, expected))
+        else:
+            values = _sampled_at(time, part_time, column.values, settled=settled)
+            first.ours[name] = replace(column, values=values)
+            if np.isnan(values).all() and not column.is_empty:
+                problem = f"has no time near those of {first.table.name}"
+                expected = "times of one clock in all files"
+                first.faults.append(part.table.fault(None, TIME_NAME, problem, expected))
+                first.awaited.update(part.ours)
+                return
+    for name, column in part.covariates.items():
+        unique = f"{Path(part.table.name).stem}.{name}" if name in names else name
+        values = _sampled_at(time, part_time, column.values, settled=settled)
+        first.covariates[unique] = replace(column, name=unique, values=values)
+    how = "nearest sample" if settled else "straight line between samples"
+    first.notes.append(f"{part.table.name} joined by time, each row with its {how}")
+
+
+def _sampled_at(
+    time: FloatArray, file_time: FloatArray, values: FloatArray, *, settled: bool
+) -> FloatArray:
+    """Return values, which a file has at its own times, at other times; NaN where none is near."""
+    is_there = np.isfinite(file_time) & ~np.isnan(values)
+    file_time, values = file_time[is_there], values[is_there]
+    if len(file_time) < 2:
+        return np.full(len(time), np.nan)
+    step = float(np.median(np.diff(file_time)))
+    after = np.clip(np.searchsorted(file_time, time), 1, len(file_time) - 1)
+    nearest = after - (time - file_time[after - 1] < file_time[after] - time)
+    distance = np.abs(file_time[nearest] - time)
+    if settled:
+        return np.where(distance <= _REACH * step, values[nearest], np.nan)
+    between = np.interp(time, file_time, values, left=np.nan, right=np.nan)
+    return np.where(
+        (np.diff(file_time)[after - 1] <= _GAP * step) | (distance == 0.0), between, np.nan
+    )

@@ -5,17 +5,16 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.errors import Fault
 from designer.measured.assign import POSITION, TEMPERATURE_NAME, length_names, tension_names
-from designer.measured.left_handed import left_handed
 from designer.measured.table import LogTable
 from designer.model.measured_data import Measured
-from designer.model.robot import Robot
+from designer.model.robot import Poses, Robot
 from designer.statics.geometry import cable_geometry
 
 FEWEST_POSES = 5
@@ -30,7 +29,7 @@ _METRES = f"metres, or the unit in {_MAP}"
 
 
 @dataclass(frozen=True, slots=True)
-class _Ratio:
+class _LengthRatio:
     """Measured lengths of one cable over straight distances, by level and by spread over rows."""
 
     level: float
@@ -53,19 +52,12 @@ class _Ratio:
 def unit_faults(robot: Robot, measured: Measured, file: str, *, is_homed: bool) -> list[Fault]:
     """Return lengths or positions that seem to be in another unit than metres.
 
-    Parameters
-    ----------
-    robot, measured
-        The robot as declared, and its log.
-    file : str
-        The log, for messages.
-    is_homed : bool
-        Whether the winches' offsets are known, so that the level of the lengths means something;
-        their spread over the rows always does.
+    Where ``is_homed`` the winches' offsets are known, so that the level of the lengths means
+    something; their spread over the rows always does.
     """
     chord = cable_geometry(robot, measured.poses).chord_m
     ratios = [
-        _ratio(length, distance, is_homed=is_homed)
+        _length_ratio(length, distance, is_homed=is_homed)
         for length, distance in zip(measured.length_m.T, chord.T, strict=True)
     ]
     spreads = [ratio.spread for ratio in ratios if not math.isnan(ratio.spread)]
@@ -79,7 +71,7 @@ def unit_faults(robot: Robot, measured: Measured, file: str, *, is_homed: bool) 
     names, units = length_names(len(ratios)), [ratio.unit for ratio in ratios]
     faults = []
     for unit in dict.fromkeys(unit for unit in units if unit):
-        cables = [k for k, own_unit in enumerate(units) if own_unit == unit]
+        cables = [k for k, unit_of_cable in enumerate(units) if unit_of_cable == unit]
         problem = (
             f"lengths change about {_about([ratios[k].spread for k in cables])} times as much as "
             f"the poses ask for, as if they were in {unit}"
@@ -93,14 +85,7 @@ def sense_faults(
 ) -> list[Fault]:
     """Return what cannot be so, whatever effects the model may lack.
 
-    Parameters
-    ----------
-    robot, measured
-        The robot as declared, and its log.
-    table : LogTable
-        The file, for messages.
-    is_homed : bool
-        Whether the winches' offsets are known, so that lengths are positive.
+    Where ``is_homed`` the winches' offsets are known, so that lengths are positive.
     """
     faults = []
     poses = measured.poses
@@ -115,7 +100,7 @@ def sense_faults(
         problem = f"the temperature is about {middle:.4g}, as if it were in kelvin"
         expected = f"°C, or {{to: {TEMPERATURE_NAME}, unit: K}} in {_MAP}"
         faults.append(table.fault(None, TEMPERATURE_NAME, problem, expected))
-    faults += [*_wrong_cable(robot, measured, table), *_pushing(robot, measured, table)]
+    faults += [*_cable_faults(robot, measured, table), *_compression_faults(robot, measured, table)]
     if not faults and is_homed:
         names = length_names(robot.n_cables)
         negative = np.argwhere(measured.length_m.T <= 0.0)
@@ -132,16 +117,16 @@ def sense_faults(
             for cable, row in negative
         )
         faults += table.first_few(not_positive, len(negative), "lengths that are not positive")
-    return faults or list(_too_light(robot, measured, table))
+    return faults or list(_underweight_faults(robot, measured, table))
 
 
-def _ratio(length_m: FloatArray, chord_m: FloatArray, *, is_homed: bool) -> _Ratio:
+def _length_ratio(length_m: FloatArray, chord_m: FloatArray, *, is_homed: bool) -> _LengthRatio:
     seen = ~np.isnan(length_m)
     if not seen.any() or np.ptp(chord_m[seen]) == 0.0:
-        return _Ratio(math.nan, math.nan)
+        return _LengthRatio(math.nan, math.nan)
     length, chord = length_m[seen], chord_m[seen]
     level = float(np.median(length / chord)) if is_homed else math.nan
-    return _Ratio(level, float(np.std(length) / np.std(chord)))
+    return _LengthRatio(level, float(np.std(length) / np.std(chord)))
 
 
 def _is_near(value: float, factor: float, tolerance: float) -> bool:
@@ -152,14 +137,14 @@ def _about(values: Sequence[float]) -> str:
     return f"{float(f'{np.median(values):.2g}'):g}"
 
 
-def _wrong_cable(robot: Robot, measured: Measured, table: LogTable) -> list[Fault]:
+def _cable_faults(robot: Robot, measured: Measured, table: LogTable) -> list[Fault]:
     """Tell lengths that shrink as the distance grows, or that follow another cable's distance.
 
     Where all follow their own in a mirrored frame, that is told instead; of two cables only where
     it suits them better, since on a symmetrical robot their plugs may as well be exchanged.
     """
     names, faults = length_names(robot.n_cables), []
-    alike = _alike(robot, measured)
+    alike = _correlations(robot, measured)
     likest = alike.max(axis=1)
     for cable, best in enumerate(np.argmax(alike, axis=1)):
         if alike[cable, cable] < _UNLIKE and likest[cable] > _ALIKE:
@@ -174,20 +159,23 @@ def _wrong_cable(robot: Robot, measured: Measured, table: LogTable) -> list[Faul
         return faults
     read = np.isfinite(measured.length_m).any(axis=0)
     for text, view in left_handed(robot, measured):
-        own = np.diag(_alike(robot, view))[read]
-        better = len(faults) > 2 or np.mean(1.0 - own) < 0.5 * np.mean(1.0 - likest[read])
-        if own.min() > _ALIKE and better:
+        agreement = np.diag(_correlations(robot, view))[read]
+        better = len(faults) > 2 or np.mean(1.0 - agreement) < 0.5 * np.mean(1.0 - likest[read])
+        if agreement.min() > _ALIKE and better:
             problem = f"suit the lengths with {text}: the frame of the poses is mirrored"
             expected = f"a right-handed frame, as by 'scale: -1' or other names in {_MAP}"
             return [Fault(table.name, 1, ", ".join(POSITION), problem, expected)]
     return faults
 
 
-def _alike(robot: Robot, measured: Measured) -> FloatArray:
+def _correlations(robot: Robot, measured: Measured) -> FloatArray:
     """Return how each length goes with the distance to each exit point (n_cables, n_cables)."""
     chord_m = cable_geometry(robot, measured.poses).chord_m
     return np.array(
-        [[_correlation(own, other) for other in chord_m.T] for own in measured.length_m.T]
+        [
+            [_correlation(length_m, distance_m) for distance_m in chord_m.T]
+            for length_m in measured.length_m.T
+        ]
     )
 
 
@@ -198,7 +186,7 @@ def _correlation(reading: FloatArray, prediction: FloatArray) -> float:
     return float(np.corrcoef(reading[seen], prediction[seen])[0, 1])
 
 
-def _pushing(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fault]:
+def _compression_faults(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fault]:
     """Tell load cells that read a push most of the time."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a column without any reading
@@ -210,7 +198,7 @@ def _pushing(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Faul
             yield table.fault(None, name, problem, f"a pull, or 'scale: -1' in {_MAP}")
 
 
-def _too_light(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fault]:
+def _underweight_faults(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fault]:
     total_N = measured.tension_N.sum(axis=1)
     pull_N = _pull_N(robot)
     # Cables pull along themselves, so that their tensions add up to the weight at least; half of it
@@ -228,3 +216,28 @@ def _too_light(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fa
 
 def _pull_N(robot: Robot) -> float:
     return float(np.linalg.norm(robot.pull_N[:3]))
+
+
+# Poses in a left-handed frame: one axis counted the other way, or two of them exchanged.
+
+
+def left_handed(robot: Robot, measured: Measured) -> Iterator[tuple[str, Measured]]:
+    """Yield each left-handed frame in words, with the rows as they are if it was the camera's.
+
+    An axis may have been counted from the robot's zero, or from the middle of its exit points.
+    """
+    for text, mirror in _mirrors():
+        for zero in (np.zeros(3), robot.exit_points_m.mean(axis=0)):
+            poses = measured.poses
+            position = zero + (poses.position_m - zero) @ mirror
+            # Each axis of the body is mirrored as well, which leaves a rotation.
+            rotation = mirror @ poses.rotation @ mirror
+            yield text, replace(measured, poses=Poses(position, rotation))
+
+
+def _mirrors() -> Iterator[tuple[str, FloatArray]]:
+    for axis, name in enumerate("xyz"):
+        yield f"{name} counted the other way", np.diag(np.where(np.arange(3) == axis, -1.0, 1.0))
+    for order in ([1, 0, 2], [2, 1, 0], [0, 2, 1]):
+        first, second = (name for name, k in zip("xyz", range(3), strict=True) if order[k] != k)
+        yield f"{first} and {second} exchanged", np.eye(3)[order]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from designer.diagnosis.drift import _innovations, _shared_innovations, gain_beside_drift
+from designer.diagnosis.drift import _innovations, _shared_innovations, linear_gain_in_drift
 
 ROWS, CHANNELS = 60, 4
 
@@ -21,7 +21,7 @@ def gain_of(noise: np.ndarray, effect: np.ndarray) -> float:
     """Return the gain of an effect of one parameter that is fitted by least squares."""
     size = np.sum(noise * effect) / np.sum(effect**2)
     slopes = -effect[..., None]
-    return gain_beside_drift(noise, noise - size * effect, slopes, np.array([True]))
+    return linear_gain_in_drift(noise, noise - size * effect, slopes, np.array([True]))
 
 
 @pytest.mark.parametrize(("decay", "share"), [(0.9, 0.4), (0.995, 1.0), (0.0, 0.0)])
@@ -99,8 +99,8 @@ def test_zeros_gain_nothing_in_sensors_that_drift_however_rows_mix_them() -> Non
         left = np.einsum("rcd,rd->rc", shares, 5.0 * noise(rng, 0.97))
         zeros = np.linalg.lstsq(shares.reshape(-1, CHANNELS), left.ravel(), rcond=None)[0]
         after = left - shares @ zeros
-        known.append(gain_beside_drift(left, after, -shares, every, shares=shares))
-        unknown.append(gain_beside_drift(left, after, -shares, every))
+        known.append(linear_gain_in_drift(left, after, -shares, every, shares=shares))
+        unknown.append(linear_gain_in_drift(left, after, -shares, every))
     # By chance 27 is exceeded once in 50 000 times.
     assert max(known) < 27.0
     assert np.median(unknown) > 27.0  # what the mixing is known for

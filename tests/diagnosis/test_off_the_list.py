@@ -17,7 +17,7 @@ from twins.robots import FAST3, YARD3
 
 from designer.cli.tables import print_diagnosis
 from designer.diagnosis.diagnose import _with_one_force
-from designer.diagnosis.hold import Reason, Withdrawn, _unsteady
+from designer.diagnosis.hold import Reason, RejectedEffect, _unsteady
 from designer.diagnosis.result import Diagnosis, DiagnosisVerdict, Finding
 from designer.diagnosis.structure import Event, is_one_smooth_error
 from designer.effects.registry import SHIPPED
@@ -81,7 +81,7 @@ def test_a_tilt_gives_way_to_a_force_where_rows_are_unsteady() -> None:
         assert (withdrawn is not None) == is_withdrawn
         if withdrawn is not None:
             assert withdrawn.instead == (force,)
-        outcome.withdrawn = (Withdrawn("platform_force", reason=Reason.UNSEEN),)
+        outcome.withdrawn = (RejectedEffect("platform_force", reason=Reason.UNSEEN),)
         assert _unsteady(outcome) is None  # else it would be told as withdrawn and as found
 
 

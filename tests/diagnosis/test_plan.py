@@ -13,7 +13,7 @@ from test_cli import designer
 from twins.dataset import make
 from twins.robots import HALL6, HALL8, YARD3
 
-from designer.diagnosis.calibration import told_by
+from designer.diagnosis.calibration import identifiability_of
 from designer.diagnosis.fit import fit
 from designer.diagnosis.plan import candidates, exchanged, plan, slopes_at
 from designer.io.config import read_study
@@ -81,11 +81,11 @@ def test_no_single_exchange_tells_more() -> None:
 
 def test_deviations_of_slopes_are_those_of_the_normal_equations() -> None:
     slopes = np.random.default_rng(4).normal(size=(9, 2, 4))
-    told = told_by(slopes, 9)
+    told = identifiability_of(slopes, 9)
     inverse = np.linalg.inv(np.einsum("rcp,rcq->pq", slopes, slopes))
     assert told.std == pytest.approx(np.sqrt(np.diag(inverse)))
     twins = np.concatenate([slopes, slopes[..., :1]], axis=-1)
-    assert list(told_by(twins, 9).is_settled) == [False, True, True, True, False]
+    assert list(identifiability_of(twins, 9).is_settled) == [False, True, True, True, False]
 
 
 def test_a_plan_has_as_many_poses_as_its_diagnosis_asks_for(tmp_path) -> None:

@@ -1,9 +1,10 @@
-"""The search ends, and keeps no effect that does not foretell rows it has not seen."""
+"""The search ends, keeps no effect that does not foretell, finds sets that do better together."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,10 +13,11 @@ from twins.effects import predict
 from twins.robots import HALL8, YARD3
 
 from designer.diagnosis.case import case_of
-from designer.diagnosis.fit import Fit, _linear_step, huber
+from designer.diagnosis.diagnose import diagnose_study
+from designer.diagnosis.fit import Fit, StartingPoint, _linear_step, huber
 from designer.diagnosis.hold import Outcome
 from designer.diagnosis.problem import Predictor, Problem
-from designer.diagnosis.search import EffectTrial, Searcher, _best
+from designer.diagnosis.search import EffectTrial, LinearModel, Searcher, _best, best_sets
 from designer.diagnosis.statistics import heldout_rows
 from designer.effects.effect import Effect, Setting
 from designer.io.config import read_study
@@ -87,14 +89,18 @@ def test_a_pair_is_found_though_others_suit_the_average_of_it(times_noise, tmp_p
     make(YARD3, effects, rows=60, seed=173).write(tmp_path)
     searcher = searcher_of(tmp_path)
     assert sorted(effect.id for effect in searcher.run()[2]) == sorted(effects)
-    monkeypatch.setattr(searcher, "_looked_ahead", lambda effects, present, _: (effects, present))
+    monkeypatch.setattr(
+        searcher, "_with_better_set", lambda effects, present, _: (effects, present)
+    )
     assert sorted(effect.id for effect in searcher.run()[2]) != sorted(effects)
 
 
 @pytest.mark.slow
 def test_it_ends_where_pruning_undoes_what_was_added(searcher, monkeypatch) -> None:
     monkeypatch.setattr(searcher, "_pruned", lambda found: [])
-    monkeypatch.setattr(searcher, "_looked_ahead", lambda effects, present, _: (effects, present))
+    monkeypatch.setattr(
+        searcher, "_with_better_set", lambda effects, present, _: (effects, present)
+    )
     steps, _, found = searcher.run()
     assert found == ()
     assert len(steps) == 1
@@ -103,7 +109,7 @@ def test_it_ends_where_pruning_undoes_what_was_added(searcher, monkeypatch) -> N
 def test_what_does_not_foretell_is_left_out(searcher) -> None:
     by_id = {effect.id: effect for effect in searcher.candidates}
     both = [by_id["platform_mass"], by_id["tension_bias"]]
-    kept = searcher._predicting(both, searcher.fit(both))
+    kept = searcher._without_useless(both, searcher.fit(both))
     assert [effect.id for effect in kept] == ["platform_mass"]
 
 
@@ -155,9 +161,9 @@ def test_a_force_gives_way_to_a_tilt_and_a_mass_that_do_as_well(tmp_path, robot)
     make(robot, {e: robot.draw(e, size_for(robot, e, 10.0)) for e in names}).write(tmp_path)
     search = searcher_of(tmp_path)
     (force,) = (e for e in search.candidates if e.id == "platform_force")
-    parted = search._parted([force], search.fit([force]))
+    parted = search._split_into_parts([force], search.fit([force]))
     assert {effect.id for effect in parted} == set(names)
-    assert [e.id for e in search._parted([], search.fit([]))] == []
+    assert [e.id for e in search._split_into_parts([], search.fit([]))] == []
 
 
 def test_of_laws_that_are_one_the_one_that_acts_first_is_named(searcher) -> None:
@@ -181,3 +187,74 @@ def test_of_laws_that_are_one_the_one_that_acts_first_is_named(searcher) -> None
 
 def _at(effect: Effect) -> tuple[Setting, ...]:
     return (Setting(effect, {"coefficient_per_K": 1e-5}),)
+
+
+def view(key: str, residual, slopes) -> StartingPoint:
+    names = [f"p{k}" for k in range(slopes.shape[1])]
+    parameters = tuple(SimpleNamespace(name=name, bounds=(-1e6, 1e6)) for name in names)
+    effect = SimpleNamespace(key=key, parameters=parameters)
+    return StartingPoint(Setting(effect, dict.fromkeys(names, 0.5)), residual, slopes)
+
+
+def test_what_a_set_leaves_is_that_of_weighted_least_squares() -> None:
+    rng = np.random.default_rng(71)
+    residual, weight, known = (
+        rng.normal(size=40),
+        rng.uniform(0.2, 1.0, 40),
+        rng.normal(size=(40, 2)),
+    )
+    views = [
+        view(str(p), residual + rng.normal(size=40), rng.normal(size=(40, p))) for p in (1, 3, 2)
+    ]
+    model = LinearModel(views, residual, known, weight)
+    root = np.sqrt(weight)
+    start = views[0].residual + views[1].residual - residual
+    columns = np.hstack([views[0].slopes, views[1].slopes, known]) * root[:, None]
+    step, (left,), *_ = np.linalg.lstsq(columns, -root * start, rcond=None)
+    assert model.step((0, 1))[0] == pytest.approx(left, rel=1e-6)
+    reached = [value for s in model.settings((0, 1)) for value in s.values.values()]
+    assert reached == pytest.approx(0.5 + step[:4], abs=1e-6)
+
+
+def test_a_pair_is_best_though_another_is_better_than_each_of_it() -> None:
+    rng = np.random.default_rng(72)
+    first, second, between, *others = np.linalg.qr(rng.normal(size=(60, 9)))[0].T
+    residual = 30.0 * (first + second)
+    columns = {"first": first, "second": second, "average": first + second + 0.5 * between}
+    columns |= {f"other {k}": column for k, column in enumerate(others)}
+    views = [view(key, residual, column[:, None]) for key, column in columns.items()]
+    model = LinearModel(views, residual, np.empty((60, 0)), np.ones(60))
+
+    def best_beside(*present: str) -> list[set[str]]:
+        own = [v.setting.effect for v in views if v.setting.effect.key in present]
+        sets = best_sets(model, lambda _: 2.0, own, 2, 4)
+        return [{setting.effect.key for setting in together} for together in sets]
+
+    assert best_beside("average")[0] == {"first", "second"}
+    assert {"first", "second"} not in best_beside("first", "second")
+    assert best_beside()[0] == {"first", "second"}
+    assert {"average"} not in best_beside()  # which adds one to none
+
+
+TOGETHER = "anchor_offset of cable 1 and anchor_offset of cable 3"
+TWO_LENGTHS_OFF = {"offset_1_m": 0.08, "offset_2_m": 0.0, "offset_3_m": -0.06}
+WITHIN_A_METRE = ((14.0, 15.0), (9.5, 10.5), (4.5, 5.5))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("box_m", "is_told"), [(WITHIN_A_METRE, False), (YARD3.box_m, True)], ids=["near", "all over"]
+)
+def test_two_exit_points_are_told_from_offsets_of_lengths_by_poses_all_over(
+    box_m, is_told, tmp_path
+) -> None:
+    robot = replace(YARD3, box_m=box_m)
+    make(robot, {"length_offset": TWO_LENGTHS_OFF}, rows=60, seed=31).write(tmp_path)
+    study = read_study(tmp_path / "config.yaml")
+    diagnosis = diagnose_study(study, read_measured(study))
+    (finding,) = diagnosis.findings
+    assert finding.effect.id == "length_offset"
+    assert (TOGETHER not in finding.rivals) is is_told
+    assert not any("winch_scale" in rival for rival in finding.rivals)  # which has offsets as well
+    told_apart = {proposal.rival for proposal in diagnosis.proposals}
+    assert told_apart <= set(finding.rivals)

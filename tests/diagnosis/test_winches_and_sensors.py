@@ -16,7 +16,7 @@ from designer.diagnosis.case import case_of
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.result import Diagnosis
-from designer.effects.drum_eccentricity import best_wave
+from designer.effects.winches import best_wave
 from designer.io.config import read_study
 from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured

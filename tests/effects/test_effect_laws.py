@@ -12,9 +12,9 @@ from scipy.spatial.transform import Rotation
 
 from designer.analysis.sensitivities import payload_scaled
 from designer.diagnosis.problem import readings_of as foretold
-from designer.effects.backlash import direction_of, dragged_m
 from designer.effects.effect import Effect, Readings, frame_size_m
 from designer.effects.registry import SHIPPED
+from designer.effects.winches import direction_of, dragged_m
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.load_case import LoadCase, Wind
 from designer.model.machine import Machine

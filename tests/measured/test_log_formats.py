@@ -21,7 +21,7 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
 from designer.errors import Fault, InputError
-from designer.measured import formats
+from designer.measured import table
 from designer.model.measured_data import Measured
 
 
@@ -270,7 +270,7 @@ def test_cells_of_a_sheet_stand_in_any_order(log: Log) -> None:
 def test_a_small_workbook_that_unpacks_to_a_huge_one(
     log: Log, monkeypatch: pytest.MonkeyPatch, rows: bytes
 ) -> None:
-    monkeypatch.setattr(formats, "_MOST_CELLS", 50_000_000 // 10)
+    monkeypatch.setattr(table, "_MOST_CELLS", 50_000_000 // 10)
     log.read()
     write_workbook(log.folder / "log.xlsx", cells(log))
     change_sheet(
@@ -304,7 +304,7 @@ def test_a_log_that_hardly_changes_is_read(log: Log) -> None:
     unpacked = sum(part.file_size for part in zipfile.ZipFile(path).infolist())
     assert unpacked > 1_000_000
     with path.open("rb") as file:
-        assert formats.read_table(file, "log.xlsx").n_rows == 3_600
+        assert table.read_table(file, "log.xlsx").n_rows == 3_600
 
 
 def split(log: Log, lag_s: float = 0.0) -> None:

@@ -16,16 +16,16 @@ from designer.analysis.provenance import Provenance
 from designer.arrays import frozen_array
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
+from designer.diagnosis.plan import Proposal
 from designer.diagnosis.problem import Predictor
-from designer.diagnosis.proposals import Proposal
 from designer.diagnosis.result import (
     MOST_SCATTER,
     Diagnosis,
     Estimate,
     Finding,
+    RejectedEffect,
     RopeChoice,
     Use,
-    Withdrawn,
 )
 from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.effects.effect import Setting
@@ -186,7 +186,7 @@ def test_rivals_warnings_and_proposals_are_shown(diagnoses: dict[str, Diagnosis]
         found,
         findings=(finding,),
         proposals=(proposal,),
-        withdrawn=(Withdrawn("creep", "time_s", 0.4),),
+        withdrawn=(RejectedEffect("creep", "time_s", 0.4),),
     )
     report = report_of(doubtful)
     assert diagnosis_page(report).verdict.tone == "doubt"
@@ -288,7 +288,7 @@ def test_where_structure_is_left_is_told(diagnoses: dict[str, Diagnosis]) -> Non
 def test_what_was_added_and_is_not_found_is_told(diagnoses: dict[str, Diagnosis]) -> None:
     found = diagnoses["pulley"]
     pruned = dataclasses.replace(found, findings=())
-    gone = dataclasses.replace(pruned, withdrawn=(Withdrawn("pulley_radius", "time_s", 0.4),))
+    gone = dataclasses.replace(pruned, withdrawn=(RejectedEffect("pulley_radius", "time_s", 0.4),))
     for diagnosis, remark in (
         (found, "added pulley_radius"),
         (pruned, "added pulley_radius, which others made superfluous later"),

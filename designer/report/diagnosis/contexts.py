@@ -1,26 +1,28 @@
 """What the templates of a diagnosis get: numbers and domain objects; None for no section.
 
-Beside it every template of a diagnosis gets `shared`.
+Beside it every template of a diagnosis gets `shared`. Each figure is drawn when a template first
+asks for it, and once.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
 from itertools import groupby
 
 import numpy as np
 
-from designer.diagnosis.errors_of import Interval
-from designer.diagnosis.free_poses import TAKEN_UP
+from designer.diagnosis.accuracy import Interval
+from designer.diagnosis.free_poses import ABSORBED
 from designer.diagnosis.result import MOST_SCATTER, Diagnosis, Finding
 from designer.diagnosis.search import EffectTrial
 from designer.diagnosis.statistics import SIGNIFICANCE
+from designer.diagnosis.structure import Carrier
 from designer.report import format as fmt
-from designer.report.diagnosis.drawings import Drawings
-from designer.report.diagnosis.quantity import quantities
-from designer.report.diagnosis.words import grouped
-from designer.report.document import MOST_ROWS
+from designer.report.diagnosis.words import grouped, quantities
+from designer.report.document import MOST_ROWS, Drawing, vector
+from designer.report.figures.diagnosis import Layout, carriers_chart, errors_chart, rows_chart
 
 Context = Mapping[str, object]
 
@@ -67,7 +69,7 @@ def first_page(diagnosis: Diagnosis) -> Context:
     scatter = max(diagnosis.scatter.values(), default=0.0)
     return {
         **verdict(diagnosis),
-        "hidden": [key for key, why in diagnosis.skipped if why.startswith(TAKEN_UP)],
+        "hidden": [key for key, why in diagnosis.skipped if why.startswith(ABSORBED)],
         "significances": [_significance(diagnosis, group) for group in grouped(findings)],
         "without_rivals": grouped(alone),
         "scatter": scatter if scatter > MOST_SCATTER else None,
@@ -123,23 +125,23 @@ def errors(diagnosis: Diagnosis) -> Context:
         unsolved = max(stage.n_rows - stage.n_solved for stage in (before, after))
     n_cables = diagnosis.machine.robot.n_cables
     prefix = "Cable " if n_cables < 5 else ""
-    shown = [quantity for quantity, *_ in quantities(diagnosis)]
+    measured = [quantity for quantity, *_ in quantities(diagnosis)]
     files = diagnosis.study.measurements.sessions if diagnosis.study.measurements else ()
     return {
         "session_heads": [
             "Session",
             "File",
             ("Rows", ""),
-            *((f"{q.name.capitalize()} {when} [{q.unit}]", "") for q in shown for when in _WHEN),
+            *((f"{q.name.capitalize()} {when} [{q.unit}]", "") for q in measured for when in _WHEN),
         ],
         "sessions": [
             [
-                str(each.session),
-                files[each.session - 1].file_names if files else "",
-                str(each.n_rows),
-                *(q.shown(error) for q in shown for error in getattr(each, q.field)),
+                str(error_of_session.session),
+                files[error_of_session.session - 1].file_names if files else "",
+                str(error_of_session.n_rows),
+                *(q.shown(error) for q in measured for error in getattr(error_of_session, q.field)),
             ]
-            for each in diagnosis.sessions
+            for error_of_session in diagnosis.sessions
         ],
         "foretold": foretold,
         "unsolved": unsolved,
@@ -191,46 +193,36 @@ def search(diagnosis: Diagnosis) -> Context:
 
 
 def design(diagnosis: Diagnosis) -> Context:
-    """What the better model does to the design, and the effects for the config."""
+    """What the better model does to the design, and the effects for the config, as YAML."""
+    from designer.diagnosis.design import declared_by
+    from designer.diagnosis.result import effects_table
+    from designer.documents.edits import block
+
     uses = (
         ("After", "the one chosen before", diagnosis.kept),
         ("Before", "on the machine", diagnosis.mounted_before),
         ("After", "on the machine", diagnosis.mounted_after),
     )
+    table = effects_table(declared_by(diagnosis))
+    before, after = diagnosis.design_before, diagnosis.design_after
+    names = ("diameter_m", "max_tension_N", "utilisation", "optimum_m", "optimum_tension_N")
+    changes = []  # relative, of each figure of the design; NaN where there is none
+    if before is not None and after is not None:
+        ratios = [getattr(after, name) / getattr(before, name) for name in names]
+        changes = [ratio - 1.0 if math.isfinite(ratio) else math.nan for ratio in ratios]
     return {
         "config": f"{diagnosis.study.source.path.stem}.diagnosed.yaml",
-        "effects": _effects_text(diagnosis),
-        "changes": list(_changes(diagnosis)),
+        "effects": f"{block({'effects': table})}\n" if table else "",
+        "changes": changes,
         "uses": [use for use in uses if use[2] is not None],
     }
 
 
-def _changes(diagnosis: Diagnosis) -> Iterator[float]:
-    """Yield the relative change of each figure of the design; NaN where there is none."""
-    before, after = diagnosis.design_before, diagnosis.design_after
-    if before is None or after is None:
-        return
-    names = ("diameter_m", "max_tension_N", "utilisation", "optimum_m", "optimum_tension_N")
-    for name in names:
-        ratio = getattr(after, name) / getattr(before, name)
-        yield ratio - 1.0 if math.isfinite(ratio) else math.nan
-
-
-def _effects_text(diagnosis: Diagnosis) -> str:
-    """Return the block ``effects`` as YAML; empty where there are none."""
-    from designer.diagnosis.design import declared_by
-    from designer.diagnosis.result import effects_table
-    from designer.documents.edits import block
-
-    table = effects_table(declared_by(diagnosis))
-    return f"{block({'effects': table})}\n" if table else ""
-
-
 def data(diagnosis: Diagnosis) -> Context:
     """What was measured, what stands off, and what these data cannot show."""
-    left, balance = diagnosis.imbalance, None
-    if left is not None and not np.isnan(left).all():
-        balance = float(np.nanmedian(left)), float(np.nanmax(left))
+    imbalance, balance = diagnosis.imbalance, None
+    if imbalance is not None and not np.isnan(imbalance).all():
+        balance = float(np.nanmedian(imbalance)), float(np.nanmax(imbalance))
     return {
         "n_heldout": int(diagnosis.heldout.sum()),
         "imbalance": balance,
@@ -242,3 +234,58 @@ def data(diagnosis: Diagnosis) -> Context:
 def assumptions(_: Diagnosis) -> Context:
     """What the diagnosis rests on."""
     return {}
+
+
+# Figures.
+
+_MAX_PANELS = 4
+"""Panels side by side that are still wide enough to be read."""
+_MAX_ON_FIRST_PAGE = 3
+"""The same, in the panel of the first page."""
+
+
+class Drawings:
+    """Figures by name; None where nothing is drawn."""
+
+    def __init__(self, diagnosis: Diagnosis) -> None:
+        self._diagnosis = diagnosis
+
+    @cached_property
+    def errors(self) -> Drawing | None:
+        """The error at each stage."""
+        return vector(errors_chart(self._diagnosis))
+
+    @cached_property
+    def rows(self) -> Drawing | None:
+        """The residual of every reading over the rows."""
+        return vector(rows_chart(self._diagnosis))
+
+    @cached_property
+    def strongest(self) -> Drawing | None:
+        """The residual against what it goes with most, for the first page."""
+        diagnosis = self._diagnosis
+        structure = diagnosis.structure_after
+        carriers = diagnosis.structure_before.carriers
+        if diagnosis.is_unexplained:
+            carriers = structure.present or structure.carriers
+        layout: Layout = "overlaid" if diagnosis.findings else "after"
+        return self._carriers(carriers[:_MAX_ON_FIRST_PAGE], "diagnosis-first", layout)
+
+    @cached_property
+    def carriers_before(self) -> Drawing | None:
+        """The residual against what it went with before."""
+        carriers = self._diagnosis.structure_before.carriers[:_MAX_PANELS]
+        layout: Layout = "stacked" if self._diagnosis.findings else "after"
+        return self._carriers(carriers, "diagnosis-carriers", layout)
+
+    @cached_property
+    def carriers_after(self) -> Drawing | None:
+        """What is left; None without findings, as that is the whole residual."""
+        if not self._diagnosis.findings:
+            return None
+        carriers = self._diagnosis.structure_after.carriers[:_MAX_PANELS]
+        return self._carriers(carriers, "diagnosis-left", "after")
+
+    def _carriers(self, carriers: Sequence[Carrier], key: str, layout: Layout) -> Drawing | None:
+        names = [carrier.name for carrier in carriers]
+        return vector(carriers_chart(self._diagnosis, names, key, layout)) if names else None

@@ -11,7 +11,7 @@ from designer.diagnosis.result import Diagnosis
 from designer.report import format as fmt
 from designer.report.diagnosis import contexts
 from designer.report.diagnosis.contexts import Context, shared
-from designer.report.diagnosis.quantity import kinds
+from designer.report.diagnosis.words import kinds
 from designer.report.document import MOST_ROWS, Report, Section, control_of
 from designer.report.render import write_pages
 from designer.report.templates import Statement, plain_statement

@@ -14,7 +14,7 @@ from designer.diagnosis.result import Diagnosis
 from designer.diagnosis.structure import strongest_channel
 from designer.report import format as fmt
 from designer.report.diagnosis import words
-from designer.report.diagnosis.quantity import Quantity, quantities
+from designer.report.diagnosis.words import Quantity, quantities
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
 

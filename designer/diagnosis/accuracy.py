@@ -20,7 +20,7 @@ from designer.model.measured_data import KINDS, Noise
 from designer.model.robot import Poses
 from designer.statics.forward import solve_forward
 
-_DRAWS = 400
+_BOOTSTRAP_DRAWS = 400
 """Of the bootstrap: the ends of a 95 % interval scatter by a thirtieth of its width."""
 
 
@@ -39,49 +39,27 @@ class Interval:
         return self.low, self.high
 
 
-def _heldout(interval: Interval) -> dict[str, object]:
-    return {"heldout_rms": interval.value, "heldout_interval": interval.interval}
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Error:
-    """Error of one kind of reading, in SI units.
+    """Error of one kind of reading, in SI units."""
 
-    Parameters
-    ----------
-    rms : float
-        Over the rows that were fitted.
-    heldout : Interval
-        Over the rows that no fit has seen.
-    heldout_of_cable : array (n_cables,)
-        The same, cable by cable.
-    """
-
-    rms: float
-    heldout: Interval = field(metadata={"json": _heldout})
+    rms: float  #: over the rows that were fitted
+    heldout: Interval = field(
+        metadata={"json": lambda i: {"heldout_rms": i.value, "heldout_interval": i.interval}}
+    )  #: over the rows that no fit has seen
+    #: (n_cables,): the same, cable by cable
     heldout_of_cable: FloatArray = field(metadata={"json": "heldout_rms_of_cable"})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stage:
-    """The model at one point of the search: as declared, then with each effect.
+    """The model at one point of the search: as declared, then with each effect."""
 
-    Parameters
-    ----------
-    label : str
-        What was added.
-    settings : tuple of Setting
-        All effects with their values.
-    length_m, tension_N : Error or None
-        None where nothing of the kind was measured.
-    n_not_held : int
-        Rows that this model cannot hold: they are in no error, of whatever stage.
-    """
-
-    label: str
-    settings: tuple[Setting, ...] = field(metadata={"json": None})
-    length_m: Error | None
+    label: str  #: what was added
+    settings: tuple[Setting, ...] = field(metadata={"json": None})  #: all effects with their values
+    length_m: Error | None  #: none where nothing of the kind was measured
     tension_N: Error | None
+    #: rows that this model cannot hold: they are in no error, of whatever stage
     n_not_held: int = field(default=0, metadata={"json": "rows_not_held"})
 
 
@@ -118,24 +96,15 @@ def _before_and_after(errors: tuple[float, float]) -> dict[str, object]:
 
 @dataclass(frozen=True, slots=True)
 class SessionError:
-    """Root mean square errors of one session on rows that no fit has seen, before and after.
+    """Root mean square errors of one session on rows that no fit has seen, before and after."""
 
-    Parameters
-    ----------
-    session : int
-        Its number, from 1.
-    n_rows, n_heldout : int
-        Its rows, and those of them that were held out.
-    length_m, tension_N : (float, float)
-        Before and after [m, N]; NaN where none were measured.
-    """
-
-    session: int
+    session: int  #: its number, from 1
+    #: its rows, and those of them that were held out
     n_rows: int = field(metadata={"json": "rows"})
     n_heldout: int = field(metadata={"json": "heldout"})
     length_m: tuple[float, float] = field(
         metadata={"json": lambda e: {"length_m": _before_and_after(e)}}
-    )
+    )  #: before and after [m, N]; NaN where none were measured
     tension_N: tuple[float, float] = field(
         metadata={"json": lambda e: {"tension_N": _before_and_after(e)}}
     )
@@ -164,7 +133,11 @@ def errors_of_sessions(
     session = problem.measured.session
     if session is None:
         return ()
-    is_sound = ~np.isnan(_sound_in_each(problem.residual(last), session))
+    residual = problem.residual(last)
+    is_sound = np.zeros(residual.shape, dtype=np.bool_)
+    for number in np.unique(session):  # a whole session is no outlier, however far it is off
+        rows = session == number
+        is_sound[rows] = ~np.isnan(without_outliers(residual[rows]))
     before, after = (
         np.where(is_sound, problem.residual(settings), np.nan) * problem.sigma
         for settings in (first, last)
@@ -172,20 +145,11 @@ def errors_of_sessions(
     answer = []
     for number in np.unique(session).tolist():
         unseen = heldout & (session == number)
-        kinds = zip(*(np.hsplit(each[unseen], 2) for each in (before, after)), strict=True)
+        kinds = zip(*(np.hsplit(residual[unseen], 2) for residual in (before, after)), strict=True)
         lengths, tensions = ((rms(was), rms(now)) for was, now in kinds)
         count = int((session == number).sum())
         answer.append(SessionError(number, count, int(unseen.sum()), lengths, tensions))
     return tuple(answer)
-
-
-def _sound_in_each(residual: FloatArray, session: IntArray) -> FloatArray:
-    """Blank the outliers of each session; a whole session is none, however far it is off."""
-    sound = np.empty_like(residual)
-    for number in np.unique(session):
-        rows = session == number
-        sound[rows] = without_outliers(residual[rows])
-    return sound
 
 
 def outliers_of(residual: FloatArray, row_numbers: IntArray) -> tuple[Outlier, ...]:
@@ -202,19 +166,14 @@ def bootstrap(unseen: FloatArray, block: IntArray) -> Interval:
 
     Blocks are drawn with replacement, since within a block rows may be alike.
 
-    Parameters
-    ----------
-    unseen : array (n_rows, n_channels)
-        Residuals; NaN where there is none.
-    block : array (n_rows,)
-        Number of the block of each row.
+    Residuals (n_rows, n_channels) are NaN where there is none; ``block`` is that of each row.
     """
     square = np.nansum(unseen**2, axis=1)
     count = np.sum(~np.isnan(unseen), axis=1)
     third = thirds_of(block)
     sums = np.array([[square[third == k].sum(), count[third == k].sum()] for k in np.unique(third)])
     rng = np.random.default_rng(0)
-    draw = rng.integers(len(sums), size=(_DRAWS, len(sums)))
+    draw = rng.integers(len(sums), size=(_BOOTSTRAP_DRAWS, len(sums)))
     total = sums[draw].sum(axis=1)
     low, high = np.quantile(np.sqrt(total[:, 0] / np.maximum(total[:, 1], 1)), [0.025, 0.975])
     return Interval(rms(unseen), float(low), float(high))
@@ -237,26 +196,16 @@ def _error(residual: FloatArray, heldout: BoolArray) -> Error | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Foretold:
-    """Root mean square errors of forward statics over rows that no fit has seen.
+class ForwardError:
+    """Root mean square errors of forward statics over rows that no fit has seen."""
 
-    Parameters
-    ----------
-    n_rows, n_solved : int
-        Held-out rows with all lengths, and those of them in which a balance was found.
-    position_m : Interval
-        Distance of the platform from where it was [m].
-    turn_rad : Interval or None
-        Angle of the platform against where it was [rad]; None for one that cannot turn.
-    tension_N : Interval or None
-        Of the tensions at the winches [N]; None where none were measured.
-    """
-
+    #: held-out rows with all lengths, and those of them in which a balance was found
     n_rows: int = field(metadata={"json": "rows"})
     n_solved: int = field(metadata={"json": "solved"})
-    position_m: Interval
+    position_m: Interval  #: distance of the platform from where it was [m]
+    #: angle of the platform against where it was [rad]; None for one that cannot turn
     turn_rad: Interval | None
-    tension_N: Interval | None
+    tension_N: Interval | None  #: of the tensions at the winches [N]; None where none were measured
 
 
 def with_sound_lengths(problem: Problem, settings: Sequence[Setting]) -> BoolArray:
@@ -266,15 +215,12 @@ def with_sound_lengths(problem: Problem, settings: Sequence[Setting]) -> BoolArr
     return np.asarray(np.isfinite(residual[:, :n]).all(axis=1))
 
 
-def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -> Foretold | None:
+def forward_error(
+    problem: Problem, settings: Sequence[Setting], chosen: BoolArray
+) -> ForwardError | None:
     """Return how well lengths alone foretell pose and tensions; None without any row or pose.
 
-    Parameters
-    ----------
-    problem, settings
-        Data, and the effects in the model.
-    chosen : array (n_rows,) of bool
-        Rows to compare; each has all lengths.
+    Of the rows ``chosen`` (n_rows,), each of which has all lengths.
     """
     measured = problem.measured
     rows = np.flatnonzero(chosen)
@@ -286,26 +232,26 @@ def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -
     away, turn = np.full((2, measured.n_rows, 1), np.nan)
     n_solved = 0
     for of_machine, machine in problem.predict.machines(settings):
-        own = np.flatnonzero(of_machine & chosen)
-        if not own.size:
+        places = np.flatnonzero(of_machine & chosen)
+        if not places.size:
             continue
-        force, poses = added_force_N(machine, measured), placed.poses.part(own)
+        force, poses = added_force_N(machine, measured), placed.poses.part(places)
         forward_statics = solve_forward(
             machine.robot,
             machine.cables,
-            true.length_m[own],
+            true.length_m[places],
             poses,
-            None if force is None else force[own],
+            None if force is None else force[places],
         )
         reached = forward_statics.poses
         n_solved += int(forward_statics.statics.is_solved.sum())
-        away[own, 0] = np.linalg.norm(reached.position_m - poses.position_m, axis=-1)
-        tension[own] = true.tension_N[own] - forward_statics.statics.exit_tension_N
+        away[places, 0] = np.linalg.norm(reached.position_m - poses.position_m, axis=-1)
+        tension[places] = true.tension_N[places] - forward_statics.statics.exit_tension_N
         if not machine.robot.is_point_mass:
-            turn[own, 0] = _turn_rad(reached, poses)
+            turn[places, 0] = _turn_rad(reached, poses)
     block = block_of(len(chosen))[rows]
     is_point_mass = problem.predict.machine.robot.is_point_mass
-    return Foretold(
+    return ForwardError(
         n_rows=rows.size,
         n_solved=n_solved,
         position_m=bootstrap(away[rows], block),

@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 from twins.dataset import make
 from twins.robots import HALL6, HALL8, YARD3
 
+from designer.diagnosis.accuracy import _turn_rad, bootstrap, forward_error, with_sound_lengths
 from designer.diagnosis.case import case_of
-from designer.diagnosis.errors_of import _turn_rad, bootstrap, foretell, with_sound_lengths
 from designer.diagnosis.problem import Predictor, Problem
 from designer.diagnosis.statistics import heldout_rows
 from designer.effects.effect import Setting
@@ -47,8 +47,8 @@ def test_lengths_without_noise_lead_to_the_pose(robot, tmp_path) -> None:
         for key, values in truth.items()
     ]
     heldout = heldout_rows(48)
-    blind = foretell(problem, (), heldout)
-    found = foretell(problem, settings, heldout)
+    blind = forward_error(problem, (), heldout)
+    found = forward_error(problem, settings, heldout)
     assert found.n_rows == found.n_solved == heldout.sum()
     # The table has six decimals of a metre.
     assert found.position_m.value < 1e-5
@@ -63,12 +63,12 @@ def test_a_length_that_stands_off_is_left_out(tmp_path) -> None:
     heldout = heldout_rows(48)
     row = int(np.flatnonzero(heldout)[2])
     sound = heldout & with_sound_lengths(problem, ())
-    clean = foretell(problem, (), sound)
+    clean = forward_error(problem, (), sound)
     length = problem.measured.length_m.copy()
     length[row, 0] += 1.0
     measured = replace(problem.measured, length_m=length)
     spoilt = Problem(measured, Predictor(case.machine, measured), problem.noise)
-    wild = foretell(spoilt, (), heldout & with_sound_lengths(spoilt, ()))
+    wild = forward_error(spoilt, (), heldout & with_sound_lengths(spoilt, ()))
     assert wild.n_rows == clean.n_rows - 1
     assert wild.position_m.value < 1.5 * clean.position_m.value
 
@@ -82,7 +82,7 @@ def test_without_lengths_there_is_nothing_to_foretell(tmp_path) -> None:
     problem = Problem(measured, Predictor(case.machine, measured), noise)
     sound = with_sound_lengths(problem, ())
     assert not sound.any()
-    assert foretell(problem, (), sound) is None
+    assert forward_error(problem, (), sound) is None
 
 
 @pytest.mark.parametrize("turn_deg", [0.0, 1e-4, 30.0, 120.0, 179.0])
