@@ -28,8 +28,7 @@ _HOMES = {
     "designer.model.uncertainty": "Normal Uncertainty Uniform",
     "designer.model.verdict": "Verdict",
     "designer.model.workspace": "Workspace",
-    "designer.optimum.optimise": "optimise",
-    "designer.optimum.result": "Optimum",
+    "designer.optimum.optimise": "Optimum optimise",
     "designer.resources": "example_file example_names",
     "designer.study": "CableGroup DeclaredEffect Selection Study",
 }
@@ -54,8 +53,7 @@ if TYPE_CHECKING:
     from designer.model.uncertainty import Normal, Uncertainty, Uniform
     from designer.model.verdict import Verdict
     from designer.model.workspace import Workspace
-    from designer.optimum.optimise import optimise
-    from designer.optimum.result import Optimum
+    from designer.optimum.optimise import Optimum, optimise
     from designer.resources import example_file, example_names
     from designer.study import CableGroup, DeclaredEffect, Selection, Study
 

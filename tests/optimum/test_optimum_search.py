@@ -17,8 +17,7 @@ from designer.grades.registry import load_catalogue
 from designer.optimum.measures import MEASURES, Quick, promising
 from designer.optimum.optimise import optimum_of
 from designer.optimum.plan import Values
-from designer.optimum.search import _OverError, _Run, search
-from designer.optimum.trial import NO_STUDY, Examiner, Trial
+from designer.optimum.search import NO_STUDY, Examiner, Trial, _OverError, _Run, search
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ from optimum_cases import plan_of
 
 from designer.optimum.optimise import MOST_VERIFIED, Verifier
 from designer.optimum.plan import Values
-from designer.optimum.trial import Trial
+from designer.optimum.search import Trial
 
 
 def tried(values: Values) -> Trial:

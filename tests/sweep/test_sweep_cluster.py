@@ -16,8 +16,7 @@ import pytest
 from sweep_cases import SWEEP, written
 
 from designer.sweep.plan import read_sweep
-from designer.sweep.run import run
-from designer.sweep.store import opened
+from designer.sweep.run import opened, run
 
 pytestmark = [
     pytest.mark.slow,
