@@ -148,7 +148,7 @@ def _violation(result: Json) -> float:
         if check["state"] != State.HOLDS:
             figures = (check[name] for name in ("demand", "capacity", "utilisation"))
             shortfalls.append(shortfall(*(math.nan if x is None else x for x in figures)))
-    return max(shortfalls, default=1.0)
+    return float(max(shortfalls, default=1.0))
 
 
 class _OverError(Exception):
