@@ -15,25 +15,14 @@ from designer.export.workshop import to_csv
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """One format.
+    """One format."""
 
-    Parameters
-    ----------
-    write : callable
-        From the robot and the stem of the files' names to the files.
-    ending : str
-        How the first of them ends.
-    needs_cables, needs_ropes : bool
-        Whether the design is solved for it, and whether that must come to ropes of a catalogue.
-    needs_maps : bool
-        Whether it shows maps of the workspace.
-    """
-
+    #: from the robot and the stem of the files' names to the files
     write: Callable[[ExportedRobot, str], Export]
-    ending: str
-    needs_cables: bool = True
-    needs_ropes: bool = False
-    needs_maps: bool = False
+    ending: str  #: how the first of them ends
+    needs_cables: bool = True  #: whether the design is solved for it
+    needs_ropes: bool = False  #: whether that must come to ropes of a catalogue
+    needs_maps: bool = False  #: whether it shows maps of the workspace
 
 
 FORMATS = {

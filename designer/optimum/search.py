@@ -140,7 +140,8 @@ def _violation(result: Json) -> float:
     workspace = result.get("workspace")
     if workspace is None:
         return 2.0
-    not_held = 1.0 - float(workspace["statuses"][Verdict.SOLVED.label]) / workspace["samples"]
+    held = float(workspace["statuses"][Verdict.SOLVED.label])
+    not_held: float = 1.0 - held / workspace["samples"]
     if not_held:
         return 1.0 + not_held
     shortfalls = []

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 import pyvista
 
-from designer.export.glb import Surface, glb
-from designer.export.gltf import to_gltf
+from designer.export.gltf import Surface, glb, to_gltf
 from designer.export.robot import ExportedRobot
 from designer.io.config import read_study
 
