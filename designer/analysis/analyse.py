@@ -50,10 +50,8 @@ from designer.selection.select import select
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Study, as_built_by, require_answerable
-from designer.workspace.hanging import HangingCables
-from designer.workspace.result import WorkspaceMap
 from designer.workspace.section import section_of_workspace
-from designer.workspace.sweep import map_workspace
+from designer.workspace.sweep import HangingCables, WorkspaceMap, map_workspace
 
 
 class TemporaryFolder:

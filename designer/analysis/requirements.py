@@ -38,7 +38,7 @@ from designer.selection.spooling import spooling_of
 from designer.sizing.newton import size_poses
 from designer.study import Selection, Study
 from designer.workspace.demand import tension_demand
-from designer.workspace.result import WorkspaceMap
+from designer.workspace.sweep import WorkspaceMap
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis

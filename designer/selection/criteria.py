@@ -24,9 +24,8 @@ from designer.statics.stiffness import (
     upright_stiffness,
 )
 from designer.study import Selection
-from designer.workspace.clearance import names_of, smallest_clearance
-from designer.workspace.interference import where_pairs_are_near
-from designer.workspace.straight import where_each_pulls_most
+from designer.workspace.clearance import names_of, smallest_clearance, where_pairs_are_near
+from designer.workspace.demand import where_each_pulls_most
 
 ROUNDING = 1e-9
 """Relative: how exactly the solver keeps a limit that it chooses the internal forces by."""

@@ -39,24 +39,14 @@ _CHECKED = 64
 
 @dataclass(frozen=True, eq=False)
 class BestTurns(Following):
-    """The orientation in a range that needs the thinnest cable of a family, at each position.
+    """The orientation in a range that needs the thinnest cable of a family, at each position."""
 
-    Parameters
-    ----------
-    robot, material
-        Without load cases, as drawn; and the family.
-    region : Region
-        Whose positions are asked; elsewhere the law goes on as it is at its rim.
-    range_rad : array (2, 3)
-        Lowest and highest components of the rotation vector [rad].
-    hangs_below : str
-        See `Workspace`; an orientation whose pose is left out is not taken.
-    """
-
-    robot: Robot
-    material: Material
-    region: Region
+    robot: Robot  #: without load cases, as drawn
+    material: Material  #: the family
+    region: Region  #: whose positions are asked; elsewhere the law goes on as it is at its rim
+    #: (2, 3) lowest and highest components of the rotation vector [rad]
     range_rad: Annotated[FloatArray, checked.Shape((2, 3))]
+    #: see `Workspace`; an orientation whose pose is left out is not taken
     hangs_below: HangsBelow = "include"
 
     @cached_property

@@ -26,15 +26,15 @@ from designer.statics.fixed_length import cables_of_length
 from designer.statics.inverse import Statics, solve_sagging
 from designer.workspace.clearance import (
     PLATFORM,
+    Curves,
     cable_margin_m,
     cable_pairs,
     clearance_among_cables,
     clearance_to_platform,
+    platform_hull,
     smallest_clearance,
+    survey,
 )
-from designer.workspace.hull import platform_hull
-from designer.workspace.interference import survey
-from designer.workspace.shapes import Curves
 
 LIGHT = Cable(0.01, 1e-6, 1e9, 1e6)
 

@@ -15,8 +15,7 @@ from designer.model.workspace import Workspace
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
 from designer.statics.task import LONG
-from designer.workspace.hanging import HangingCables, look_at, survey_hanging
-from designer.workspace.sweep import map_workspace
+from designer.workspace.sweep import HangingCables, look_at, map_workspace, survey_hanging
 
 STEEL = Material(7800.0, 200e9, 180e6)
 MAST = frozen_array([[0, 0, 0], [100, 0, 0], [100, 80, 0], [0, 80, 0]])

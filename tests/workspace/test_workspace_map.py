@@ -15,10 +15,8 @@ from designer.model.robot import Poses
 from designer.model.space import Orientations, Space
 from designer.model.workspace import Workspace
 from designer.sizing.newton import size_poses
-from designer.workspace.pool import Pool
-from designer.workspace.refine import Worst, refine, refine_each
-from designer.workspace.store import open_sweep
-from designer.workspace.sweep import map_workspace
+from designer.workspace.refine import Pool, Worst, refine, refine_each
+from designer.workspace.sweep import map_workspace, open_sweep
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 
