@@ -15,9 +15,8 @@ from designer.model.cable import Cable, Cables
 from designer.model.load_case import Loaded
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
-from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.inverse import Statics, sag_ratio, solve_sagging
 from designer.statics.modes import NEAR, TAKES_PART, frequencies_Hz
-from designer.statics.shape import sag_ratio
 from designer.statics.stiffness import (
     largest_displacement_m_per_N,
     least_eigenvalue_N_per_m,

@@ -14,21 +14,14 @@ from designer.model.robot import Poses, Robot
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CableGeometry:
-    """Chords of all cables in all poses.
+    """Chords of all cables in all poses."""
 
-    Parameters
-    ----------
-    horizontal_distance_m, drop_m : array (..., n_cables)
-        Horizontal distance and drop from exit point to attachment point [m].
-    outward : array (..., n_cables, 2)
-        Unit vector from exit point toward attachment point in plan; zero for a vertical cable.
-    lever_m : array (..., n_cables, 3)
-        From the body frame's origin to the attachment point, world axes [m].
-    """
-
-    horizontal_distance_m: FloatArray
-    drop_m: FloatArray
+    horizontal_distance_m: FloatArray  #: (..., n_cables) from exit point to attachment point [m]
+    drop_m: FloatArray  #: (..., n_cables) the same [m]
+    #: (..., n_cables, 2) unit vector from exit point toward attachment point in plan; zero for a
+    #: vertical cable
     outward: FloatArray
+    #: (..., n_cables, 3) from the body frame's origin to the attachment point, world axes [m]
     lever_m: FloatArray
 
     @property

@@ -1,7 +1,7 @@
 r"""How platform and cables oscillate together about an equilibrium, with winches braked.
 
-Each cable is a chain of catenaries (`designer.physics.chain`) that is eliminated up to its end, so
-that at the square :math:`λ = (2 π f)^2` of a frequency the platform resists with
+Each cable is a chain of catenaries (`designer.physics.tangent`) that is eliminated up to its end,
+so that at the square :math:`λ = (2 π f)^2` of a frequency the platform resists with
 
 .. math::
 
@@ -27,7 +27,7 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.robot import Platform, Robot
-from designer.physics.chain import Chain, chain_of
+from designer.physics.tangent import Chain, chain_of
 from designer.statics.geometry import centre_of_mass_arm_m, cross_matrix, upright_poses
 from designer.statics.inverse import Statics
 from designer.statics.stiffness import per_reach, scaled, upright_stiffness
@@ -46,22 +46,13 @@ _RANGE, _HALVINGS, _STEP = 1e6, 26, 1e-5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mode:
-    """One way in which platform and cables oscillate.
+    """One way in which platform and cables oscillate."""
 
-    Parameters
-    ----------
-    frequency_Hz : float
-        Its natural frequency; 0 where the platform would not stay [Hz].
-    shape : array (3,) or (6,)
-        Displacement of the origin of the body frame, and turn, along the axes of the base frame
-        [m, rad]; the attachment that moves farthest moves by 1 m.
-    cable_share : float
-        Share of the cables in the kinetic energy.
-    """
-
-    frequency_Hz: float
+    frequency_Hz: float  #: its natural frequency; 0 where the platform would not stay [Hz]
+    #: (3,) or (6,) displacement of the origin of the body frame, and turn, along the axes of the
+    #: base frame [m, rad]; the attachment that moves farthest moves by 1 m
     shape: FloatArray
-    cable_share: float
+    cable_share: float  #: share of the cables in the kinetic energy
 
 
 def knows_inertia(robot: Robot, body: Platform) -> bool:

@@ -31,18 +31,12 @@ Answer = TypeVar("Answer")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PulleyRun:
-    """How the cables run over their pulleys.
+    """How the cables run over their pulleys."""
 
-    Parameters
-    ----------
-    exit_points_m : array (n_cables, 3) or (..., n_cables, 3)
-        Where the cables leave the pulleys, upright frame [m]; the exit points without pulleys.
-    wrap_m : array (..., n_cables) or zero
-        Length that lies on the pulleys [m].
-    """
-
+    #: (n_cables, 3) where the cables leave the pulleys, upright frame [m]; the exit points without
+    #: pulleys
     exit_points_m: FloatArray
-    wrap_m: FloatArray
+    wrap_m: FloatArray  #: (..., n_cables) length that lies on the pulleys [m]
 
     @property
     def has_wrap(self) -> bool:

@@ -20,7 +20,7 @@ it is the envelope theorem, and μ, σ and ρ are the multipliers of the optimum
 
 That F turns with everything else gives its slope in the load across the cable's plane:
 :math:`δF = δω × F - K (δω × e)`, e being the chord and δω the turn of the load; a pulley stays
-upright (`designer.statics.pull_slopes`).
+upright (`designer.statics.stiffness`).
 """
 
 from __future__ import annotations
@@ -31,47 +31,66 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.model.robot import Robot
+from designer.physics import catenary
 from designer.statics.geometry import cross_matrix, plane_vector
-from designer.statics.inverse import Statics
-from designer.statics.pull_slopes import pull_slopes
-from designer.statics.sag_slopes import SagSlopes, sag_slopes
-from designer.statics.shape import sag_ratio
-from designer.statics.stiffness import per_reach
+from designer.statics.inverse import Statics, sag_ratio
+from designer.statics.stiffness import per_reach, pull_slopes
 
 _TIED, _ACTIVE, _AT_SAG = 1e-7, 1e-5, 1e-4
 """Relative: tensions of the most used cables that are one, and what is at a limit of an optimum;
 the limit of the sag is kept with a margin where cables stretch."""
 _RANK, _LEFT, _NEGATIVE = 1e-9, 1e-4, -1e-6
 """Smallest singular value over the largest; what may be left of the conditions; no multiplier."""
+_STEP = 1e-6
+"""Relative, of central differences: the rest is about its square."""
 _UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class SagSlopes:
+    """Slopes of the sag over the chord of each cable (n,), its forces following."""
+
+    by_length: FloatArray  #: (n,) in the unstrained length [1/m]
+    by_stiffness: FloatArray  #: (n,) in the logarithm of EA
+    by_load: FloatArray  #: (n, 3) in the load per length [m/N]
+    by_chord: FloatArray  #: (n, 3) in the vector from exit point to attachment [1/m]
+
+
+def sag_slopes(
+    length_m: FloatArray, chord_m: FloatArray, EA_N: FloatArray, load_N_per_m: FloatArray
+) -> SagSlopes:
+    """Return the slopes for lengths and EA (n,), chords and loads per length (n, 3)."""
+    state = np.column_stack([length_m, np.log(EA_N), load_N_per_m, chord_m])
+    load, chord = (np.linalg.norm(v, axis=1) for v in (load_N_per_m, chord_m))
+    sizes = np.column_stack([length_m, np.ones_like(load), *[load] * 3, *[chord] * 3])
+    slopes = np.empty_like(state)
+    for k in range(state.shape[1]):
+        step = np.zeros_like(state)
+        step[:, k] = _STEP * sizes[:, k]
+        slopes[:, k] = (_sag_ratio(state + step) - _sag_ratio(state - step)) / (2.0 * step[:, k])
+    return SagSlopes(slopes[:, 0], slopes[:, 1], slopes[:, 2:5], slopes[:, 5:])
+
+
+def _sag_ratio(state: FloatArray) -> FloatArray:
+    length, EA, load, vector = state[:, 0], np.exp(state[:, 1]), state[:, 2:5], state[:, 5:]
+    weight, chord = np.linalg.norm(load, axis=1), np.linalg.norm(vector, axis=1)
+    D = np.einsum("nk,nk->n", vector, load) / weight
+    X = np.linalg.norm(vector - (D / weight)[:, None] * load, axis=1)
+    force_x, force_z = catenary.forces_from_length(length, X, D, EA, weight)
+    return np.asarray(catenary.sag_m(length, force_x, force_z, EA, weight, X, D) / chord)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Slopes:
-    """Slopes of the utilisation at one pose, the pose itself held.
+    """Slopes of the utilisation at one pose, the pose itself held."""
 
-    Parameters
-    ----------
-    cable : int
-        Whose utilisation it is, from 1; of an optimum one of those that are used alike.
-    utilisation : float
-        Its largest tension over its allowable tension.
-    load : array (dof,)
-        In the load wrench, upright frame [1/N, 1/(N·m)].
-    stiffness : array (n_cables,)
-        In the logarithm of each cable's EA.
-    cable_load_m_per_N : array (n_cables, 3)
-        In the load per unstrained length of each cable, base frame [m/N].
-    exit_points_per_m : array (n_cables, 3)
-        In the exit points, base frame [1/m].
-    """
-
-    cable: int
-    utilisation: float
-    load: FloatArray
-    stiffness: FloatArray
+    cable: int  #: whose utilisation it is, from 1; of an optimum one of those that are used alike
+    utilisation: float  #: its largest tension over its allowable tension
+    load: FloatArray  #: in the load wrench, upright frame [1/N, 1/(N·m)]
+    stiffness: FloatArray  #: (n_cables,) in the logarithm of each cable's EA
+    #: (n_cables, 3) in the load per unstrained length of each cable, base frame [m/N]
     cable_load_m_per_N: FloatArray
-    exit_points_per_m: FloatArray
+    exit_points_per_m: FloatArray  #: (n_cables, 3) in the exit points, base frame [1/m]
 
     @property
     def position_per_m(self) -> FloatArray:

@@ -17,8 +17,7 @@ from designer.model.verdict import Verdict
 from designer.model.workspace import HangsBelow, Workspace
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.cable_loss import CableLoss, settle
-from designer.statics.distribution import tension_over_least
-from designer.statics.inverse import Statics, solve_massless, solve_sagging
+from designer.statics.inverse import Statics, solve_massless, solve_sagging, tension_over_least
 from designer.workspace.refine import ONE_CLIMB, places_of, refine_each
 
 _TWO_CLIMBS = replace(ONE_CLIMB, inside=512, starts=2)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from designer.physics import catenary, tangent
-from designer.physics.chain import chain_of
+from designer.physics.tangent import chain_of
 
 G = 9.81
 

@@ -8,8 +8,7 @@ import pytest
 from designer.arrays import FloatArray
 from designer.model.prism import Prism
 from designer.model.space import Orientations, Space
-from designer.proof.border import border_m
-from designer.proof.cover import Cover, covers_of
+from designer.proof.encloser import Cover, border_m, covers_of
 
 
 def cover_of(region: Prism) -> Cover:

@@ -12,8 +12,7 @@ from designer.model.prism import Prism
 from designer.model.rectangle import Rectangle
 from designer.model.region import Region
 from designer.model.space import Orientations, Space
-from designer.proof.cover import Cover, covers_of
-from designer.proof.encloser import _turning_axes
+from designer.proof.encloser import Cover, _turning_axes, covers_of
 
 _TRIANGLE = Prism(np.array([[0.0, 0.0], [5.0, 0.5], [2.0, 4.0]]), (-3.0, -1.0))
 _BOX = Prism.box((0.0, 2.0), (1.0, 4.0), (5.0, 5.5))

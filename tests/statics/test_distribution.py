@@ -16,9 +16,8 @@ from designer.arrays import frozen_array
 from designer.kernel.batch import solve_massless_batch
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
-from designer.statics.distribution import distribute_evenly, tension_over_least
 from designer.statics.geometry import cable_geometry, load_wrench_N, upright_situation
-from designer.statics.inverse import solve_massless
+from designer.statics.inverse import distribute_evenly, solve_massless, tension_over_least
 
 CASES = {
     "cogiro": (COGIRO, anywhere(150), 600.0),
