@@ -47,14 +47,14 @@ def to_caspr(exported: ExportedRobot, stem: str) -> Export:
         assert space is not None
         pose = Poses.at(space.region.bounds_m.mean(axis=0))
         lost.append("a pose of the study; q_initial is the middle of the region, not turned")
-    robot, pose, turned = levelled(exported.robot, pose)
-    if turned:
-        lost.append(turned)
+    robot, pose, frame_note = levelled(exported.robot, pose)
+    if frame_note:
+        lost.append(frame_note)
     lost += _lost_of(robot.platform)
     limits_m = None
     if space is not None:
         region = space.region
-        limits_m = None if turned or region.is_discrete else region.bounds_m
+        limits_m = None if frame_note or region.is_discrete else region.bounds_m
         if limits_m is None:
             lost.append("the region of the workspace")
         elif not region.contains(np.stack(np.meshgrid(*limits_m.T), axis=-1).reshape(-1, 3)).all():

@@ -100,8 +100,10 @@ class _Buffers:
     def _surface(self, surface: Surface) -> int:
         points = surface.triangles_m.reshape(-1, 3).astype(np.float32)
         # Colours of vertices are linear in light (sRGB, IEC 61966-2-1).
-        shown = np.broadcast_to(surface.colours, (len(surface.triangles_m), 3))
-        linear = np.where(shown <= 0.04045, shown / 12.92, ((shown + 0.055) / 1.055) ** 2.4)
+        screen_rgb = np.broadcast_to(surface.colours, (len(surface.triangles_m), 3))
+        linear = np.where(
+            screen_rgb <= 0.04045, screen_rgb / 12.92, ((screen_rgb + 0.055) / 1.055) ** 2.4
+        )
         colours = np.ones((len(points), 4))
         colours[:, :3] = np.repeat(linear, 3, axis=0)
         ends = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
@@ -266,9 +268,9 @@ def _points(
     if steps is not None and finite.any():
         colours = steps.colours_of(steps.norm(values[finite])) / 255.0
         balls = _ball_triangles(places[finite], radius_m)
-        each = np.repeat(colours, len(balls) // len(colours), axis=0)
+        rgb = np.repeat(colours, len(balls) // len(colours), axis=0)
         legend = _legend(quantity, steps)
-        yield Surface(quantity.title, balls, each, is_lit=False, extras=legend)
+        yield Surface(quantity.title, balls, rgb, is_lit=False, extras=legend)
     for colour, meaning in overlay.meanings([field]):
         is_it = field.is_infeasible if colour == palette.WARNING else field.is_left_out
         yield _balls(meaning, places[is_it], radius_m, colour)

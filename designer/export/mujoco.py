@@ -264,8 +264,8 @@ def _key(name: str, springs: _Springs, pose: Poses, motors_N: FloatArray) -> str
 def _coordinates(springs: _Springs, pose: Poses) -> Sequence[float]:
     """Return the joints' coordinates, counted from the reference pose."""
     moved_m = pose.position_m - springs.pose.position_m
-    turned = Rotation.from_matrix(pose.rotation @ springs.pose.rotation.T).as_rotvec()
+    rotation_vector = Rotation.from_matrix(pose.rotation @ springs.pose.rotation.T).as_rotvec()
     return [
-        float(axis @ (turned if kind == "hinge" else moved_m))
+        float(axis @ (rotation_vector if kind == "hinge" else moved_m))
         for kind, axis in _axes(springs.robot)
     ]

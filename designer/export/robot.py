@@ -221,8 +221,8 @@ def numbers(*values: float) -> str:
 def xml_document(heading: Iterable[str], lines: Iterable[str]) -> bytes:
     """Return an XML file with a comment at its head."""
     comment = [re.sub("-(?=-)", "- ", line) for line in heading]  # two would end a comment
-    first = ['<?xml version="1.0" encoding="utf-8"?>', "<!--", *comment, "-->"]
-    return ("\n".join([*first, *lines]) + "\n").encode()
+    head = ['<?xml version="1.0" encoding="utf-8"?>', "<!--", *comment, "-->"]
+    return ("\n".join([*head, *lines]) + "\n").encode()
 
 
 def inertia_of(body: Platform) -> FloatArray:

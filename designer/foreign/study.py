@@ -98,7 +98,7 @@ def study_text(robot: ForeignRobot, answers: ImportAnswers) -> str:
 
 def gaps(text: str) -> tuple[Gap, ...]:
     """Return the fields of a study's text that are to be filled in."""
-    found, path = [], list[tuple[int, str]]()
+    fields, path = [], list[tuple[int, str]]()
     for number, line in enumerate(text.splitlines(), 1):
         plain = line.split("#", 1)[0].rstrip()
         name, colon, value = plain.strip().partition(":")
@@ -108,8 +108,8 @@ def gaps(text: str) -> tuple[Gap, ...]:
         path = [*((d, n) for d, n in path if d < depth), (depth, name)]
         if value.strip() == FILL_IN:
             field = ".".join(name for _, name in path)
-            found.append(Gap(field, number, _OPTIONS[field]))
-    return tuple(found)
+            fields.append(Gap(field, number, _OPTIONS[field]))
+    return tuple(fields)
 
 
 def _robot(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:
@@ -143,8 +143,8 @@ def _winches(robot: ForeignRobot, *, has_workspace: bool) -> Iterator[str]:
     largest = robot.tension_max_N
     if largest is None:
         return
-    each = largest if isinstance(largest, tuple) else (largest,)
-    written = ["null" if limit is None else format_SI(limit, FORCE) for limit in each]
+    limits_N = largest if isinstance(largest, tuple) else (largest,)
+    written = ["null" if limit is None else format_SI(limit, FORCE) for limit in limits_N]
     value = f"[{', '.join(written)}]" if isinstance(largest, tuple) else written[0]
     mark = "" if has_workspace else "# "
     yield f"  {mark}winches: {{tension_max: {value}}}"

@@ -140,8 +140,8 @@ def _violation(result: Json) -> float:
     workspace = result.get("workspace")
     if workspace is None:
         return 2.0
-    held = float(workspace["statuses"][Verdict.SOLVED.label])
-    not_held: float = 1.0 - held / workspace["samples"]
+    share_held = float(workspace["statuses"][Verdict.SOLVED.label])
+    not_held: float = 1.0 - share_held / workspace["samples"]
     if not_held:
         return 1.0 + not_held
     shortfalls = []

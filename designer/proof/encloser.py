@@ -140,7 +140,7 @@ def _cut_at(plan: FloatArray, side: FloatArray) -> FloatArray:
     return np.take_along_axis(out, order[..., None], axis=1)[:, : plan.shape[1] + 1]
 
 
-def border_m(cover: Cover, ones: BoxEnds, others: BoxEnds) -> FloatArray:
+def border_m(cover: Cover, boxes: BoxEnds, others: BoxEnds) -> FloatArray:
     """Return the faces that boxes have in common with others, inside the region.
 
     Parameters
@@ -157,7 +157,7 @@ def border_m(cover: Cover, ones: BoxEnds, others: BoxEnds) -> FloatArray:
     """
     triangles = [np.empty((0, 3, 3))]
     for axis in range(3):
-        low, high, plan = cover.cut(*_touching(ones, others, axis))
+        low, high, plan = cover.cut(*_touching(boxes, others, axis))
         overlaps = (low <= high).all(axis=1)
         low, high, plan = low[overlaps], high[overlaps], plan[overlaps]
         if axis == 2:
@@ -173,20 +173,20 @@ def border_m(cover: Cover, ones: BoxEnds, others: BoxEnds) -> FloatArray:
     return cover.places(corners.reshape(-1, 3))[:, :3].reshape(-1, 3, 3)
 
 
-def _touching(ones: BoxEnds, boxes: BoxEnds, axis: int) -> BoxEnds:
+def _touching(boxes: BoxEnds, others: BoxEnds, axis: int) -> BoxEnds:
     """Return the common faces across an axis, as boxes that are flat along it."""
     across = [k for k in range(3) if k != axis]
     faces = []
     for side, facing in ((1, 0), (0, 1)):
-        at, planes = ones[side][:, axis], boxes[facing][:, axis]
+        at, planes = boxes[side][:, axis], others[facing][:, axis]
         order = np.argsort(planes)
         first, last = (np.searchsorted(planes[order], at, end) for end in ("left", "right"))
         count = last - first
         at_one = np.repeat(np.arange(len(at)), count)
         nth = np.arange(len(at_one)) - np.repeat(np.cumsum(count) - count, count)
         at_other = order[first[at_one] + nth]
-        low = np.maximum(ones[0][at_one], boxes[0][at_other])
-        high = np.minimum(ones[1][at_one], boxes[1][at_other])
+        low = np.maximum(boxes[0][at_one], others[0][at_other])
+        high = np.minimum(boxes[1][at_one], others[1][at_other])
         low[:, axis] = high[:, axis] = at[at_one]
         overlaps = (low < high)[:, across].all(axis=1)
         faces.append((low[overlaps], high[overlaps]))
@@ -372,12 +372,14 @@ class Encloser:
         for d in np.flatnonzero(half.max(axis=0) > _ULPS * self._size):
             step = np.zeros_like(half)
             step[:, d] = half[:, d]
-            ahead, there = self._solve(middle + step, raised)
-            behind, too = self._solve(middle - step, raised)
+            ahead, ahead_solved = self._solve(middle + step, raised)
+            behind, behind_solved = self._solve(middle - step, raised)
             # The smaller difference: where another branch begins on one side, that of the middle.
             before, after = pull - behind, ahead - pull
             change = np.where(np.abs(before) < np.abs(after), before, after)
-            change = np.where((there & too)[:, None] & (before * after > 0.0), change, 0.0)
+            change = np.where(
+                (ahead_solved & behind_solved)[:, None] & (before * after > 0.0), change, 0.0
+            )
             largest_change = _MAX_FOLLOWED * pull
             follow[..., d] = np.clip(change, -largest_change, largest_change) / half[:, d, None]
         return pull, solved, follow
@@ -418,9 +420,9 @@ def _pulls_of(statics: Statics, cable: Cable) -> FloatArray:
     return np.where(1e-3 * np.abs(D) > X, upright, level)
 
 
-def _turning_axes(turn: FloatArray) -> FloatArray:
+def _turning_axes(rotation_vector: FloatArray) -> FloatArray:
     """Return J (n, 3, 3): the turn by rotation vector + d is that by J d after the former."""
-    angle2 = np.einsum("ni,ni->n", turn, turn)[:, None, None]
+    angle2 = np.einsum("ni,ni->n", rotation_vector, rotation_vector)[:, None, None]
     angle = np.sqrt(angle2)
     small = angle < 1e-2
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -428,5 +430,5 @@ def _turning_axes(turn: FloatArray) -> FloatArray:
         series = 1.0 / 6.0 - angle2 / 120.0 + angle2**2 / 5040.0
         rest = np.where(small, series, (angle - np.sin(angle)) / (angle2 * angle))
     sine = 2.0 * half**2
-    cross = -np.cross(np.eye(3)[None], turn[:, None]).transpose(0, 2, 1)
+    cross = -np.cross(np.eye(3)[None], rotation_vector[:, None]).transpose(0, 2, 1)
     return np.asarray(np.eye(3) + sine * cross + rest * (cross @ cross))

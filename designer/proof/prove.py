@@ -200,10 +200,14 @@ class _BranchAndBound:
         self._keep(np.delete(np.arange(len(self._bound)), at))
         bound, cut = np.empty(len(at)), np.empty(len(at), dtype=np.int64)
         for k in np.unique(cover):
-            some = np.flatnonzero(cover == k)
-            bounds = self._enclosers[k].bound(low[some], high[some], raised[some], self._level)
-            bound[some], cut[some] = bounds.bound, bounds.cut
-            raised[some] = np.where(np.isnan(bounds.needs), raised[some], _SHRINKS * bounds.needs)
+            members = np.flatnonzero(cover == k)
+            bounds = self._enclosers[k].bound(
+                low[members], high[members], raised[members], self._level
+            )
+            bound[members], cut[members] = bounds.bound, bounds.cut
+            raised[members] = np.where(
+                np.isnan(bounds.needs), raised[members], _SHRINKS * bounds.needs
+            )
             self._try(self._enclosers[k], bounds)
         self.boxes += len(at)
         good = bound <= self._level
@@ -219,8 +223,8 @@ class _BranchAndBound:
         first, second = halves(low, high, cut)
         for a, b in ((low, first), (second, high)):
             for k in np.unique(cover):
-                some = np.flatnonzero(cover == k)
-                self._add(int(k), a[some], b[some], bound[some], raised[some])
+                members = np.flatnonzero(cover == k)
+                self._add(int(k), a[members], b[members], bound[members], raised[members])
 
     def _next(self, number: int) -> IntArray:
         """Return the boxes that are not known to hold, the largest first; else the worst."""
@@ -242,14 +246,14 @@ class _BranchAndBound:
             bounds.bound > self._level
         )  # nothing is known of corners
         unknown = np.argsort(np.where(bad, -bounds.bound, np.inf))[: min(_TRIES, int(bad.sum()))]
-        tried = [
+        trials = [
             bounds.worst[order],
             bounds.middle[unknown],
             bounds.middle[~bounds.solved][:_TRIES],
         ]
-        if not sum(map(len, tried)):
+        if not sum(map(len, trials)):
             return
-        places = encloser.cover.places(np.concatenate(tried))
+        places = encloser.cover.places(np.concatenate(trials))
         used = encloser.utilisation(places)
         if used.max() > self._found * _BETTER:
             self._found, self._worst = float(used.max()), places[used.argmax()]

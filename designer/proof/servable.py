@@ -75,12 +75,12 @@ def servable(robot: Robot, space: Space, budget: Budget) -> Servable | None:
     rope = Cable(np.nan, density, np.inf, _STRONG * load_N).with_attached(robot.attached)
     covers = [_Part(robot, rope, cover) for cover in covers_of(space)]
     covers[0].compile()  # which is not counted
-    boxes, most, clock = 0, min(MOST_BOXES, budget.boxes), budget.start()
-    while boxes < most and not clock.is_over:
+    boxes, max_boxes, clock = 0, min(MOST_BOXES, budget.boxes), budget.start()
+    while boxes < max_boxes and not clock.is_over:
         part = max(covers, key=lambda cover: cover.largest)
         if part.largest == 0.0:
             break
-        boxes += part.step(min(_BATCH, most - boxes))
+        boxes += part.step(min(_BATCH, max_boxes - boxes))
         if boxes >= _ENOUGH_TO_SEE and not any(part.no or part.yes for part in covers):
             break
     total = sum(part.whole for part in covers)

@@ -282,8 +282,8 @@ def _same_pose() -> Sequence[Figure]:
     statics = size_poses(_PAPERS_ROBOT, pose, _PAPERS_STEEL).statics
     lengths = zip((324.21623831, 238.20189774), statics.length_m[1:], strict=True)
     tensions = zip((119.627982, 150.236491), statics.exit_tension_N[1:] / 1e3, strict=True)
-    turns = size_by_loop(_PAPERS_ROBOT, pose, _PAPERS_STEEL).iterates
-    loop = tuple(enumerate(zip(_LOOP_kN, _LOOP_mm, turns, strict=False)))
+    iterates = size_by_loop(_PAPERS_ROBOT, pose, _PAPERS_STEEL).iterates
+    loop = tuple(enumerate(zip(_LOOP_kN, _LOOP_mm, iterates, strict=False)))
     searched = partial(Figure, tolerance=1e-7)
     printed = partial(as_printed, units=1.0)
     return (
@@ -429,8 +429,8 @@ def _ring(radius_m: float, tilt_rad: float) -> Poses:
     """Return poses all around the focal surface, tilted toward its middle."""
     x, y = np.cos(_RING_RAD), np.sin(_RING_RAD)
     height = np.full(24, 300.0 - np.sqrt(160.0**2 - radius_m**2))
-    turn = tilt_rad * np.column_stack([y, -x, 0.0 * x])
-    return Poses.at(np.column_stack([radius_m * x, radius_m * y, height]), turn)
+    rotation_rad = tilt_rad * np.column_stack([y, -x, 0.0 * x])
+    return Poses.at(np.column_stack([radius_m * x, radius_m * y, height]), rotation_rad)
 
 
 def _needed_m(tilt_rad: float) -> FloatArray:

@@ -147,8 +147,8 @@ def solve_underactuated(
             out,
             diagnostics,
         )
-        found = np.moveaxis(out, -1, 0)
-        return found, *leaving(cable.axial_stiffness_N, cable.weight_N_per_m, *found)
+        solution = np.moveaxis(out, -1, 0)
+        return solution, *leaving(cable.axial_stiffness_N, cable.weight_N_per_m, *solution)
 
     forces, run, gap_rad = over_pulleys(robot, poses, solve)
     load = np.linalg.norm(pull_N, axis=1)
@@ -251,8 +251,8 @@ class InternalBalance:
                 out,
                 rest,
             )
-            found = np.moveaxis(out, -1, 0)
-            return found, *leaving(cable.axial_stiffness_N, cable.weight_N_per_m, *found)
+            solution = np.moveaxis(out, -1, 0)
+            return solution, *leaving(cable.axial_stiffness_N, cable.weight_N_per_m, *solution)
 
         forces, run, gap_rad = over_pulleys(robot, poses, solve)
         closes = (rest <= 1e-9) & (gap_rad <= SETTLED_RAD)
@@ -290,5 +290,5 @@ def _pull_near(near: Statics, pull: FloatArray) -> FloatArray:
     """Return the pulls of a balance (n_poses, n_cables); those given where it has none."""
     across_m = near.geometry().horizontal_distance_m
     with np.errstate(divide="ignore", invalid="ignore"):
-        own = near.force_x_N / (near.weight_N_per_m * across_m)
-    return np.where(np.isfinite(own) & (own > 0.0), own, pull)
+        pull_of_near = near.force_x_N / (near.weight_N_per_m * across_m)
+    return np.where(np.isfinite(pull_of_near) & (pull_of_near > 0.0), pull_of_near, pull)

@@ -88,14 +88,14 @@ def settle(
     tension = np.full((count, robot.n_cables), np.nan)
     position = np.full((count, 3), np.nan)
     rotation = np.array(poses.rotations)
-    every = np.arange(robot.n_cables)
-    remaining = every if lost is None else np.delete(every, lost - 1)
+    cables = np.arange(robot.n_cables)
+    remaining = cables if lost is None else np.delete(cables, lost - 1)
     start = Poses(poses.position_m[at], rotation[at])
-    reduced, left = robot, cable
+    reduced_robot, reduced_cable = robot, cable
     if lost is not None:
-        reduced, left = robot.without_cable(lost), cable.without(lost)
+        reduced_robot, reduced_cable = robot.without_cable(lost), cable.without(lost)
     length = (1.0 + growth) * before.length_m[at][:, remaining]
-    forward_statics = solve_forward(reduced, left, length, start)
+    forward_statics = solve_forward(reduced_robot, reduced_cable, length, start)
     rests, at = forward_statics.is_stable, at[forward_statics.is_stable]
     tension[at] = 0.0
     tension[np.ix_(at, remaining)] = forward_statics.statics.cable_tension_N[rests]

@@ -34,8 +34,8 @@ def upright_poses(robot: Robot, poses: Poses) -> Poses:
     """Return the poses in the upright frame, whose z axis is the true vertical."""
     if robot.is_upright:
         return poses
-    turn = robot.upright
-    return Poses(np.asarray(poses.position_m @ turn.T), np.asarray(turn @ poses.rotation))
+    rotation = robot.upright
+    return Poses(np.asarray(poses.position_m @ rotation.T), np.asarray(rotation @ poses.rotation))
 
 
 def centre_of_mass_arm_m(robot: Robot, poses: Poses) -> FloatArray:
@@ -80,8 +80,8 @@ def _inertia_wrench_N(robot: Robot, poses: Poses) -> FloatArray | None:
     wrench = robot.inertia_wrench_N(poses)
     if wrench is None or robot.is_upright:
         return wrench
-    turned = wrench.reshape(*poses.shape, 2, 3) @ robot.upright.T
-    return np.asarray(turned.reshape(wrench.shape))
+    rotated = wrench.reshape(*poses.shape, 2, 3) @ robot.upright.T
+    return np.asarray(rotated.reshape(wrench.shape))
 
 
 def one_cable(robot: Robot, cable: Cable | Cables, least_tension_N: float = 0.0) -> CableFigures:

@@ -171,12 +171,12 @@ class Statics:
         wrench = np.zeros(6)
         wrench[self.robot.balance_rows] = self.wrench
         parts = np.round(wrench.reshape(2, 3) @ self.robot.upright, 2) + 0.0
-        what = [
+        motions = [
             f"{verb} ({', '.join(f'{x:g}' for x in part)})"
             for verb, part in zip(("push along", "turn it about"), parts, strict=True)
             if np.linalg.norm(part) > _MARGINAL
         ]
-        return f"{verdict.sentence} The cables would have to {' and '.join(what)}."
+        return f"{verdict.sentence} The cables would have to {' and '.join(motions)}."
 
     @property
     def free_length_m(self) -> FloatArray:
@@ -287,8 +287,8 @@ class Statics:
         matrix = structure_matrix(self.robot, self.geometry())
         forces = np.stack([self.force_x_N, self.force_z_N], axis=-1)
         flat = forces.reshape(*self.verdict.shape, matrix.shape[-1])
-        held = np.einsum("...ij,...j->...i", matrix, flat)
-        return np.asarray(held - load_wrench_N(self.robot, self.poses, self.force_N))
+        wrench = np.einsum("...ij,...j->...i", matrix, flat)
+        return np.asarray(wrench - load_wrench_N(self.robot, self.poses, self.force_N))
 
     def geometry(self) -> CableGeometry:
         """Return the chords of the cables, upright frame."""

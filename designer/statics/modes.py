@@ -66,12 +66,12 @@ def platform_mass_matrix(statics: Statics, body: Platform) -> FloatArray:
     Upright frame, about the origin of the body frame.
     """
     robot = statics.robot
-    turn = upright_poses(robot, statics.poses).rotations
+    rotation = upright_poses(robot, statics.poses).rotations
     inertia = np.zeros((3, 3)) if body.inertia_kg_m2 is None else body.inertia_kg_m2
     C = cross_matrix(centre_of_mass_arm_m(robot, statics.poses))
-    C = np.broadcast_to(C, turn.shape)
-    J = turn @ inertia @ np.swapaxes(turn, -1, -2) - body.mass_kg * C @ C
-    m = np.broadcast_to(body.mass_kg * np.eye(3), turn.shape)
+    C = np.broadcast_to(C, rotation.shape)
+    J = rotation @ inertia @ np.swapaxes(rotation, -1, -2) - body.mass_kg * C @ C
+    m = np.broadcast_to(body.mass_kg * np.eye(3), rotation.shape)
     six = np.block([[m, -body.mass_kg * C], [body.mass_kg * C, J]])
     rows = robot.balance_rows
     return np.asarray(six[..., rows[:, None], rows])
@@ -174,11 +174,11 @@ def _shape(statics: Statics, vector: FloatArray) -> FloatArray:
     """Return a shape as `Mode` has it, of a vector (dof,) in which turns are displacements."""
     robot, full = statics.robot, np.zeros(6)
     full[robot.balance_rows] = per_reach(robot) * vector
-    turned = (full.reshape(2, 3) @ robot.upright).ravel()
+    displacement = (full.reshape(2, 3) @ robot.upright).ravel()
     levers = robot.attachments_m @ statics.poses.rotation.T
-    moved = turned[:3] + np.cross(turned[3:], levers)
-    leading = turned[np.abs(turned).argmax()]
-    shape = turned / (np.linalg.norm(moved, axis=-1).max() * np.sign(leading))
+    moved = displacement[:3] + np.cross(displacement[3:], levers)
+    leading = displacement[np.abs(displacement).argmax()]
+    shape = displacement / (np.linalg.norm(moved, axis=-1).max() * np.sign(leading))
     return np.asarray(shape[: 3 if robot.is_point_mass else 6])
 
 

@@ -135,7 +135,7 @@ def over_pulleys(
     slope = straight = _straight_slope_rad(robot, level)
     strain: FloatArray | float = 0.0
     share, gap = np.ones(poses.shape), np.full(poses.shape, np.inf)
-    for turn in range(turns):
+    for iteration in range(turns):
         run = run_at(robot, level, slope).unstrained(strain)
         answer, slope_over_pulley_rad, strain = solve(run)
         slope_over_pulley_rad = _slope_over_pulley_rad(
@@ -145,7 +145,7 @@ def over_pulleys(
         before, gap = gap, np.fmax.reduce(np.abs(step), axis=-1, initial=0.0)
         if np.all(gap <= STILL_RAD):
             break
-        swings = (turn >= _PATIENCE) & (gap > 0.5 * before) & (gap > SETTLED_RAD)
+        swings = (iteration >= _PATIENCE) & (gap > 0.5 * before) & (gap > SETTLED_RAD)
         share = np.where(swings, np.maximum(0.5 * share, _LEAST_SHARE), share)
         slope = slope + share[..., None] * step
     return answer, run, gap

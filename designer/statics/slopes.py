@@ -156,8 +156,8 @@ def utilisation_slopes(
         return ()
     if robot.pulley_radius_m != 0.0 and sags.any():  # that follow the tangent points
         return ()
-    each = np.flatnonzero(governing) if cable is None else [cable - 1]
-    one_by_one = [np.arange(robot.n_cables) == k for k in each]
+    numbers = np.flatnonzero(governing) if cable is None else [cable - 1]
+    one_by_one = [np.arange(robot.n_cables) == k for k in numbers]
     results = []
     for tops in [governing] if robot.is_redundant else one_by_one:
         solved = _multipliers(robot, cables, (top, low), (tops, slack, sags), allowable)
@@ -193,9 +193,9 @@ def _multipliers(
     residual = float(np.abs(matrix @ solved - right).max())
     if rank < len(shares) or not residual <= _LEFT or (solved[dof:] < _NEGATIVE).any():
         return None
-    each = np.zeros((3, n))
-    each[np.nonzero(active)] = solved[dof:]
-    top, low, sag = each
+    by_kind = np.zeros((3, n))
+    by_kind[np.nonzero(active)] = solved[dof:]
+    top, low, sag = by_kind
     balance = solved[:dof] * per_reach(robot)
     return _Multipliers(balance / scale_N, top / allowable_N, low / scale_N, sag)
 
@@ -209,18 +209,18 @@ def _slopes(
     used: FloatArray,
 ) -> Slopes:
     """Put the multipliers into the slopes of everything else."""
-    own_top, own_low = at.top[:, None], at.low[:, None]
-    h = own_top * top.by_pull - own_low * low.by_pull
+    top_share, low_share = at.top[:, None], at.low[:, None]
+    h = top_share * top.by_pull - low_share * low.by_pull
     h = h + np.einsum("ndk,d->nk", cables.wrench, at.balance)
-    by_load = own_top * top.by_load - own_low * low.by_load
+    by_load = top_share * top.by_load - low_share * low.by_load
     by_load[:, 2] -= np.einsum("nk,nk->n", h, cables.by_weight) / cables.weight
     for axis in range(2):  # across the load, which turns
-        turn = np.cross([0.0, 0.0, -1.0], np.eye(3)[axis])
-        moved = cables.by_turn @ turn / cables.weight[:, None]
+        rotation = np.cross([0.0, 0.0, -1.0], np.eye(3)[axis])
+        moved = cables.by_turn @ rotation / cables.weight[:, None]
         by_load[:, axis] += np.einsum("nk,nk->n", h, moved)
-    own_sag, sag = at.sag[:, None], cables.sag
-    by_load += own_sag * sag.by_load
-    by_exit_point = -np.einsum("nij,ni->nj", cables.K, h) - own_sag * sag.by_chord
+    sag_share, sag = at.sag[:, None], cables.sag
+    by_load += sag_share * sag.by_load
+    by_exit_point = -np.einsum("nij,ni->nj", cables.K, h) - sag_share * sag.by_chord
     cable = int(np.where(at.top > 0.0, used, 0.0).argmax())
     return Slopes(
         cable=cable + 1,
@@ -238,8 +238,8 @@ def _cables(statics: Statics) -> _CableSlopes:
     length, F_x, F_z, EA, w = (
         np.broadcast_to(v, (1, robot.n_cables))[0] for v in statics.catenaries
     )
-    turn = cross_matrix(geometry.lever_m[0])
-    wrench = np.concatenate([np.broadcast_to(np.eye(3), turn.shape), turn], axis=1)
+    lever = cross_matrix(geometry.lever_m[0])
+    wrench = np.concatenate([np.broadcast_to(np.eye(3), lever.shape), lever], axis=1)
     slopes = pull_slopes(statics)
     across, down = geometry.horizontal_distance_m[0], -geometry.drop_m[0]
     vector = plane_vector(across, down, geometry.outward[0])

@@ -249,8 +249,8 @@ def platform_stiffness(statics: Statics) -> FloatArray:
     K = upright_stiffness(statics)
     if robot.is_planar or robot.is_upright:
         return K
-    turn = np.kron(np.eye(K.shape[-1] // 3), robot.upright)
-    return np.asarray(turn.T @ K @ turn)
+    rotation = np.kron(np.eye(K.shape[-1] // 3), robot.upright)
+    return np.asarray(rotation.T @ K @ rotation)
 
 
 def upright_stiffness(statics: Statics) -> FloatArray:
@@ -262,15 +262,17 @@ def upright_stiffness(statics: Statics) -> FloatArray:
     geometry = statics.geometry()
     B = cross_matrix(geometry.lever_m)
     F = cross_matrix(plane_vector(statics.force_x_N, statics.force_z_N, geometry.outward))
-    turn = -K @ B
+    by_rotation = -K @ B
     moment = B @ K
-    turning = (B @ turn + F @ B).sum(axis=-3)
+    moment_by_rotation = (B @ by_rotation + F @ B).sum(axis=-3)
     rotation = upright_poses(robot, statics.poses).rotation
     for point_m, pull_N in robot.turning_pulls_N:
-        turning = turning + cross_matrix(pull_N) @ cross_matrix(rotation @ point_m)
-    left = np.concatenate([K.sum(axis=-3), moment.sum(axis=-3)], axis=-2)
-    right = np.concatenate([turn.sum(axis=-3), turning], axis=-2)
-    return _balanced(robot, np.concatenate([left, right], axis=-1))
+        moment_by_rotation = moment_by_rotation + cross_matrix(pull_N) @ cross_matrix(
+            rotation @ point_m
+        )
+    by_displacement = np.concatenate([K.sum(axis=-3), moment.sum(axis=-3)], axis=-2)
+    by_rotations = np.concatenate([by_rotation.sum(axis=-3), moment_by_rotation], axis=-2)
+    return _balanced(robot, np.concatenate([by_displacement, by_rotations], axis=-1))
 
 
 def is_stable(robot: Robot, stiffness: FloatArray) -> BoolArray:

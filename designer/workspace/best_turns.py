@@ -53,11 +53,11 @@ class BestTurns(Following):
     def table(self) -> TurnTable:
         """The law: the best orientations where they were sought; level where none holds."""
         positions = self._positions_m(_NODES, 0)
-        turns, diameter_m = self.best(positions)
+        rotations, diameter_m = self.best(positions)
         is_held = np.isfinite(diameter_m)
         if not is_held.any():
             return TurnTable(positions[:1], np.clip(np.zeros((1, 3)), *self.range_rad))
-        return TurnTable(frozen_array(positions[is_held]), frozen_array(turns[is_held]))
+        return TurnTable(frozen_array(positions[is_held]), frozen_array(rotations[is_held]))
 
     @cached_property
     def excess(self) -> float:
@@ -111,16 +111,16 @@ class BestTurns(Following):
         for _ in range(1 + _STEPS):
             grid = np.zeros((len(steps) ** len(free), 3))
             grid[:, free] = list(product(steps, repeat=len(free)))
-            turns = np.clip(best[:, None] + grid * reach, low, high)
+            rotations = np.clip(best[:, None] + grid * reach, low, high)
             places = np.concatenate(
-                [np.broadcast_to(positions_m[:, None], turns.shape), turns], axis=-1
+                [np.broadcast_to(positions_m[:, None], rotations.shape), rotations], axis=-1
             )
             diameter_m = self._diameter_m(places.reshape(-1, 6)).reshape(n, -1)
-            size = np.linalg.norm(turns, axis=2) / np.abs(self.range_rad).max()
+            size = np.linalg.norm(rotations, axis=2) / np.abs(self.range_rad).max()
             value = diameter_m * (1.0 + _TIE * size**2)
             row, at = np.arange(n), value.argmin(axis=1)
             better = value[row, at] < least
-            best = np.where(better[:, None], turns[row, at], best)
+            best = np.where(better[:, None], rotations[row, at], best)
             need = np.where(better, diameter_m[row, at], need)
             least = np.minimum(least, value[row, at])
             if len(steps) > len(_BESIDE):

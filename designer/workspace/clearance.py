@@ -150,8 +150,8 @@ class Curves:
         # over, it is still no farther from the chord's ends than half its length, here bounded by
         # the triangle of a nearly full turn.
         chord = np.linalg.norm(np.diff(points, axis=-2), axis=-1)
-        turn = np.minimum(np.abs(np.diff(slope, axis=-1)), 0.999 * np.pi)
-        return Polylines(points, share, 0.5 * chord * np.tan(0.5 * turn))
+        angle = np.minimum(np.abs(np.diff(slope, axis=-1)), 0.999 * np.pi)
+        return Polylines(points, share, 0.5 * chord * np.tan(0.5 * angle))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -254,10 +254,10 @@ def _in_chunks(
         part = function(poses, Curves.of(poses))
         if part is None:
             break
-        row, tried = part
+        row, candidates = part
         # In descending order the last entry of each pose, its smallest, is what stays.
-        order = np.argsort(-tried.distance_m, kind="stable")
-        for all_of, values in zip(clearance.each(), tried.each(), strict=True):
+        order = np.argsort(-candidates.distance_m, kind="stable")
+        for all_of, values in zip(clearance.each(), candidates.each(), strict=True):
             all_of[rows[row[order]]] = values[order]
     return Clearance(*(all_of.reshape((*shape, *all_of.shape[1:])) for all_of in clearance.each()))
 
@@ -529,11 +529,11 @@ def survey(
             point_m=closest.place_m[0],
         )
 
-    near = np.concatenate([thinned, where_pairs_are_near(robot, workspace, cable, thinned)])
+    starts_near = np.concatenate([thinned, where_pairs_are_near(robot, workspace, cable, thinned)])
     return Interference(
         clearance_m=clearance_m,
         samples=int(is_counted(statics, workspace.hangs_below).sum()),
         violating=int((cables.nearer(platform).distance_m < clearance_m).sum()),
-        among_cables=nearest(clearance_among_cables, cables, near),
+        among_cables=nearest(clearance_among_cables, cables, starts_near),
         to_platform=nearest(clearance_to_platform, platform, thinned),
     )

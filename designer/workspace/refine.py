@@ -220,19 +220,19 @@ def refine_each(
         return []
     if effort is not None or len(starts) <= _MANY:
         return _PoseSearch(space, demand, effort or Effort(), len(starts)).run(starts)
-    every = np.arange(len(starts))
-    scouts = every[:: -(-len(every) // _SCOUTS)]
-    followers = np.setdiff1d(every, scouts)
+    searches = np.arange(len(starts))
+    scouts = searches[:: -(-len(searches) // _SCOUTS)]
+    followers = np.setdiff1d(searches, scouts)
 
-    def among(numbers: IntArray, effort: Effort, known: FloatArray) -> dict[int, list[Worst]]:
-        own_starts = [np.concatenate([starts[k], known]) for k in numbers]
+    def among(numbers: IntArray, effort: Effort, extra: FloatArray) -> dict[int, list[Worst]]:
+        places = [np.concatenate([starts[k], extra]) for k in numbers]
         search = _PoseSearch(space, lambda at, k: demand(at, numbers[k]), effort, len(numbers))
-        return dict(zip(numbers.tolist(), search.run(own_starts), strict=True))
+        return dict(zip(numbers.tolist(), search.run(places), strict=True))
 
     worsts = among(scouts, Effort(), np.empty((0, space.n_coordinates)))
     ends = np.concatenate([places_of(of_search) for of_search in worsts.values()])
     worsts |= among(followers, _FOLLOWING, ends)
-    return [worsts[k] for k in every.tolist()]
+    return [worsts[k] for k in searches.tolist()]
 
 
 def places_of(worsts: Iterable[Worst]) -> FloatArray:
@@ -297,31 +297,33 @@ class _PoseSearch:
         self._phase = 0
 
     def run(self, starts: Sequence[FloatArray]) -> list[list[Worst]]:
-        space, every = self._space, np.arange(self._count)
+        space, active = self._space, np.arange(self._count)
         if space.is_discrete:
             points = np.concatenate(list(map(space.places, space.region.samples_m(1, "grid", 0))))
-            self._ask_each([points] * self._count, every)
+            self._ask_each([points] * self._count, active)
             return self._worsts
         marks, common = self._marks, np.concatenate([self._marks, self._scatter(0)])
         places = [np.concatenate([of_search, common]) for of_search in starts]
-        values = self._ask_each(places, every)
+        values = self._ask_each(places, active)
         landmarks = [len(of_search) + np.arange(len(marks)) for of_search in starts]
-        self._climb_all(every, places, values, landmarks)
+        self._climb_all(active, places, values, landmarks)
         for iteration in range(1, self._effort.rounds + 1):
-            every = every[~self._is_over[every]]
-            before = self._best[every]
-            scatter, near = self._scatter(iteration), self._near_the_best(iteration, every)
+            active = active[~self._is_over[active]]
+            before = self._best[active]
+            scatter, near = self._scatter(iteration), self._near_the_best(iteration, active)
             places = [np.concatenate([scatter, of_search]) for of_search in near]
-            values = self._ask_each(places, every) if len(every) else []
+            values = self._ask_each(places, active) if len(active) else []
             threshold = before + np.where(np.isneginf(before), 0.0, 1e-10 * np.abs(before))
             higher = [of_search > least for of_search, least in zip(values, threshold, strict=True)]
-            is_over = self._is_over[every]
+            is_over = self._is_over[active]
             rising = [k for k, mask in enumerate(higher) if mask.any() and not is_over[k]]
             if not rising:
                 break
-            every, none = every[rising], np.empty(0, dtype=np.int64)
+            active, no_landmarks = active[rising], np.empty(0, dtype=np.int64)
             values = [np.where(higher[k], values[k], -np.inf) for k in rising]
-            self._climb_all(every, [places[k] for k in rising], values, [none] * len(rising))
+            self._climb_all(
+                active, [places[k] for k in rising], values, [no_landmarks] * len(rising)
+            )
         return self._worsts
 
     @property
@@ -345,11 +347,11 @@ class _PoseSearch:
         rng = np.random.default_rng([1, iteration])
         cloud = rng.uniform(-1.0, 1.0, (len(_NEAR_SCALES), 24, n))
         cloud = (cloud * _NEAR_SCALES[:, None, None] * self._size).reshape(-1, n)
-        near = []
+        clouds = []
         for best in self._best_places[among]:
-            known = best[np.isfinite(best).all(axis=1)]
-            near.append(self._space.nearest((known[:, None] + cloud).reshape(-1, n)))
-        return near
+            places = best[np.isfinite(best).all(axis=1)]
+            clouds.append(self._space.nearest((places[:, None] + cloud).reshape(-1, n)))
+        return clouds
 
     def _ask_each(self, places: Sequence[FloatArray], among: IntArray) -> list[FloatArray]:
         """Return what places (n, n_coordinates) of some searches ask for (n, n_extremes)."""
@@ -387,14 +389,14 @@ class _PoseSearch:
         is_over = self._is_over
         for k, of_search, demand, marks in zip(among, places, values, landmarks, strict=True):
             for extreme in range(0 if is_over[k] else demand.shape[1]):
-                own_demand = demand[:, extreme]
-                rows = local_maxima(self._space, of_search, own_demand, effort.starts)
+                values_of_extreme = demand[:, extreme]
+                rows = local_maxima(self._space, of_search, values_of_extreme, effort.starts)
                 if effort.from_landmarks and demand.shape[1] == 1:
-                    highest = marks[np.argsort(-own_demand[marks])][: effort.starts]
-                    rows = np.union1d(rows, highest[~np.isneginf(own_demand[highest])])
+                    highest = marks[np.argsort(-values_of_extreme[marks])][: effort.starts]
+                    rows = np.union1d(rows, highest[~np.isneginf(values_of_extreme[highest])])
                 kinds.append(np.full((len(rows), 2), (k, extreme)))
                 starts.append(of_search[rows])
-                demands.append(own_demand[rows])
+                demands.append(values_of_extreme[rows])
         if not kinds:
             return
         search, extreme = np.concatenate(kinds).T
@@ -522,7 +524,7 @@ class _PoseSearch:
         """Return each climb's own demand (n_climbs, …) at places (n_climbs, …, n_coordinates)."""
         rows = np.column_stack([climbs.search, places.reshape(len(climbs), -1)])
         # Climbs of several extremes that stand at the same place try the same places.
-        _, first, each = np.unique(
+        _, first, owner = np.unique(
             rows.view(f"V{rows[0].nbytes}").ravel(), return_index=True, return_inverse=True
         )
         distinct = np.sort(first)
@@ -530,8 +532,8 @@ class _PoseSearch:
         search = np.repeat(climbs.search[distinct], flat.shape[1])
         demand = self._ask(flat.reshape(-1, len(self._size)), search)
         demand = demand.reshape(*flat.shape[:2], -1)
-        own = demand[np.searchsorted(distinct, first[each]), :, climbs.extreme]
-        return own.reshape(places.shape[:-1])
+        values = demand[np.searchsorted(distinct, first[owner]), :, climbs.extreme]
+        return values.reshape(places.shape[:-1])
 
     def _slide(
         self,
@@ -557,8 +559,8 @@ class _PoseSearch:
         normal = np.where(outside, 0.0, offsets).sum(axis=1) / (~outside).sum(axis=1)
         normal -= np.where(outside, offsets, 0.0).sum(axis=1) / outside.sum(axis=1)
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-        some = offsets[:, rng.permutation(offsets.shape[1])[:10]]  # ten slides are tried
-        across = some - np.einsum("rtk,rk->rt", some, normal)[..., None] * normal[:, None]
+        sampled = offsets[:, rng.permutation(offsets.shape[1])[:10]]  # ten slides are tried
+        across = sampled - np.einsum("rtk,rk->rt", sampled, normal)[..., None] * normal[:, None]
         low, part = np.full((*across.shape[:2], 1), -1.0), 2.0
 
         def at(share: FloatArray) -> tuple[FloatArray, FloatArray]:

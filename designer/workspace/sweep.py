@@ -396,8 +396,8 @@ def map_workspace(
         Whether to search for the worst pose of straight weightless cables as well.
     """
     gathered = _Gathered(workspace)
-    kept = sweep_file(file, robot.n_cables, attributes) if file else nullcontext(lambda *_: None)
-    with kept as store:
+    opened = sweep_file(file, robot.n_cables, attributes) if file else nullcontext(lambda *_: None)
+    with opened as store:
         for positions in workspace.positions_m():
             places, sizing = size_worst(robot, workspace, positions, material)
             gathered.add(places, sizing)

@@ -1,19 +1,33 @@
-"""`designer export`: whole files or none, what they lose told, refusals in one line."""
+"""`designer export`: whole files or none, refusals in one line; what a file lacks is named."""
 
 from __future__ import annotations
 
 import csv
 import io
 import math
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from test_cli import STUDY, WORKSPACE, designer
 
 from designer.cli.export import Target
+from designer.export.caspr import to_caspr
 from designer.export.formats import FORMATS
-from designer.export.robot import ExportedRobot
+from designer.export.gltf import to_gltf
+from designer.export.moordyn import to_moordyn
+from designer.export.mujoco import to_mujoco
+from designer.export.robot import ExportedRobot, inertia_of, lost_by_all
 from designer.io.config import read_study
+from designer.model.cable import Attached, Material
+from designer.model.load_case import LoadCase
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
+from designer.model.robot import Platform, Poses, Robot
+from designer.model.winches import Winches
+from designer.model.workspace import Workspace
+from designer.study import Study
 
 __all__ = ["designer"]
 
@@ -94,3 +108,63 @@ def test_rows_for_the_workshop(designer) -> None:
         difference_N = number["reference_exit_tension_N"] - number["reference_platform_tension_N"]
         assert difference_N == pytest.approx(weight_N_per_m * drop_m, rel=0.01)
         assert row["remarks"].startswith("small crane, exported by cdpr-designer")
+
+
+ANCHORS = np.array([[0.0, 0.0, 9.0], [12.0, 0.0, 9.0], [6.0, 9.0, 9.0]])
+CRANE = Robot(ANCHORS, Platform(300.0))
+BOX = Prism.box((5.0, 7.0), (2.0, 4.0), (1.0, 5.0))
+ASKING = Workspace(BOX, clearance_m=0.1, floor_m=0.0)
+WINCHES = Winches(positions_m=ANCHORS, efficiency=0.9)
+CRANE_STUDY = Study(
+    "crane",
+    CRANE,
+    Material(5290.0, 62.7e9, 198e6),
+    pose=Poses.at([6.0, 3.0, 3.0]),
+    workspace=Workspace(BOX),
+)
+
+
+def test_a_plain_study_loses_nothing_for_all() -> None:
+    assert lost_by_all(CRANE_STUDY) == []
+
+
+@pytest.mark.parametrize(
+    ("study", "words"),
+    [
+        (replace(CRANE_STUDY, load_cases=(LoadCase("gale"),)), "load cases (gale)"),
+        (replace(CRANE_STUDY, workspace=ASKING), "clearance, floor"),
+        (replace(CRANE_STUDY, workspace=Workspace(PointList(BOX.bounds_m))), "the listed poses"),
+        (
+            replace(CRANE_STUDY, robot=replace(CRANE, winches=WINCHES)),
+            "winches: positions_m, efficiency",
+        ),
+    ],
+    ids=["cases", "asked", "poses", "winches"],
+)
+def test_it_is_named(study: Study, words: str) -> None:
+    assert [words in line for line in lost_by_all(study)] == [True]
+
+
+def test_what_the_winches_bear_is_in_a_caspr_model_alone() -> None:
+    study = replace(CRANE_STUDY, robot=replace(CRANE, winches=Winches(tension_max_N=4e4)))
+    assert "tension_max_N" in lost_by_all(study)[0]
+    made = to_caspr(ExportedRobot.of(study), "crane")
+    assert "<force_max>40000.0</force_max>" in made.files["crane_cables.xml"].decode()
+    assert not any("tension_max_N" in line for line in made.lost)
+
+
+@pytest.mark.parametrize("write", [to_moordyn, to_mujoco, to_gltf])
+def test_what_hangs_along_the_cables_is_named(write) -> None:
+    robot = replace(CRANE, attached=(Attached(0.3, 0.02),))
+    exported = ExportedRobot.of(replace(CRANE_STUDY, robot=robot, workspace=None))
+    made = write(exported, "crane")
+    assert any("attached along cables" in line for line in made.lost)
+    assert exported.design is not None
+    assert f"Cables: {exported.design.name}".encode() in next(iter(made.files.values()))
+
+
+def test_a_box_stands_in_for_moments_of_inertia() -> None:
+    corners = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 2.0) for z in (0.0, 3.0)])
+    assert np.allclose(inertia_of(Platform(12.0, corners)), np.diag([13.0, 10.0, 5.0]))
+    flat = inertia_of(Platform(12.0, corners * [1.0, 1.0, 0.0]))
+    assert np.linalg.eigvalsh(flat)[0] > 0.0
