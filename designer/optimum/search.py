@@ -290,22 +290,19 @@ class _Run:
 
     def _rate(self, values: Values) -> float:
         if values not in self._known:
-            self._check_budget()
+            limit_s = self._plan.time_s
+            if self._stop():
+                raise _OverError("asked")
+            if limit_s is not None and time.monotonic() - self.began_s > limit_s:
+                raise _OverError("time")
+            if self._left <= 0:
+                raise _OverError("evaluations")
             trial = replace(self._examiner.trial(values), start=self._start, round=self._round)
             self.trials.append(trial)
             self._known[values] = self._rated(trial)
             self._left -= 1
             self._advance(1)
         return self._known[values]
-
-    def _check_budget(self) -> None:
-        limit_s = self._plan.time_s
-        if self._stop():
-            raise _OverError("asked")
-        if limit_s is not None and time.monotonic() - self.began_s > limit_s:
-            raise _OverError("time")
-        if self._left <= 0:
-            raise _OverError("evaluations")
 
     def _rated(self, trial: Trial) -> float:
         if trial.holds:

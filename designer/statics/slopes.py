@@ -150,7 +150,9 @@ def utilisation_slopes(
     top, low = _top_tension(cables), _least_tension(cables)
     used, least = top.value / allowable, robot.tension_min_N
     governing = used >= used.max() * (1.0 - (_ACTIVE if robot.is_redundant else _TIED))
-    sags = _largest_sags(statics)
+    sags = np.zeros(robot.n_cables, dtype=np.bool_)
+    if robot.is_redundant and robot.sag_max is not None:
+        sags = np.asarray(sag_ratio(statics)[0] >= robot.sag_max * (1.0 - _AT_SAG))
     slack = (low.value <= least * (1.0 + _ACTIVE)) & (robot.is_redundant and least > 0.0)
     if cable is not None and robot.is_redundant and not governing[cable - 1]:
         return ()
@@ -255,14 +257,6 @@ def _cables(statics: Statics) -> _CableSlopes:
         wrench=wrench[:, robot.balance_rows],
         sag=sag_slopes(length, vector, EA, -w[:, None] * _UP),
     )
-
-
-def _largest_sags(statics: Statics) -> BoolArray:
-    """Tell which cables (n,) of a pose (1,) are at the largest sag that is allowed."""
-    robot = statics.robot
-    if not robot.is_redundant or robot.sag_max is None:
-        return np.zeros(robot.n_cables, dtype=np.bool_)
-    return np.asarray(sag_ratio(statics)[0] >= robot.sag_max * (1.0 - _AT_SAG))
 
 
 def _top_tension(cables: _CableSlopes) -> _Tension:

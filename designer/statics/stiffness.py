@@ -93,7 +93,10 @@ class _Cables:
 def pull_slopes(statics: Statics) -> PullSlopes:
     """Return the slopes of cables in poses (...); NaN where not solved, or a cable hangs folded."""
     cables, radius = _cables(statics), statics.robot.pulley_radius_m
-    solved = _solved(_matrix(cables, radius), _right(cables, radius))
+    matrix = np.empty((*cables.length.shape, 4, 4))  # slopes of both equations in F and α
+    matrix[..., :3, :3], matrix[..., :3, 3] = cables.flexibility, radius * cables.along
+    matrix[..., 3, :3], matrix[..., 3, 3] = cables.spoke, _dot(cables.upper, cables.along)
+    solved = _solved(matrix, _right(cables, radius))
     pulls, angle = solved[..., :3, :], solved[..., 3, :]
     rolled = _rolled(cables, radius, statics.axial_stiffness_N, pulls, angle)
     by_end, by_length = pulls[..., _END], pulls[..., _LENGTH]
@@ -136,14 +139,6 @@ def _cables(statics: Statics) -> _Cables:
         along=cosine * toward - sine * up,
         swivel=np.where(_is_vertical(level)[..., None], 0.0, swivel),
     )
-
-
-def _matrix(cables: _Cables, radius_m: float) -> FloatArray:
-    """Return the slopes of both equations in F and α (..., n_cables, 4, 4)."""
-    matrix = np.empty((*cables.length.shape, 4, 4))
-    matrix[..., :3, :3], matrix[..., :3, 3] = cables.flexibility, radius_m * cables.along
-    matrix[..., 3, :3], matrix[..., 3, 3] = cables.spoke, _dot(cables.upper, cables.along)
-    return matrix
 
 
 def _right(cables: _Cables, radius_m: float) -> FloatArray:

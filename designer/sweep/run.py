@@ -66,22 +66,21 @@ class Store:
         """Write the results of a chunk: what is kept of each point, and why there is nothing."""
         place, reasons = slice(points.start, points.stop), [why for _, why in results]
         for k, name in enumerate(self._plan.base.keep):
-            kind = self._plan.kinds[name]
-            values = [_as_kind(values_kept[k], kind) for values_kept, _ in results]
-            self._array(name)[place] = np.array(values, dtype=object if kind is str else float)
-            for at, (values_kept, _) in enumerate(results):
-                if kind is float and isinstance(values_kept[k], str):
+            values = [values[k] for values, _ in results]
+            if self._plan.kinds[name] is str:
+                texts = ["" if value is None else str(value) for value in values]
+                self._array(name)[place] = np.array(texts, dtype=object)
+                continue
+            self._array(name)[place] = np.array(
+                [float(x) if isinstance(x, int | float) else math.nan for x in values], dtype=float
+            )
+            for at, value in enumerate(values):
+                if isinstance(value, str):
                     reasons[at] += f"; {name} is a text here, and was none of the study as it is"
         self._array("reason")[place] = np.array(
             [why.removeprefix("; ") for why in reasons], dtype=object
         )
         self._array("done")[place] = True
-
-
-def _as_kind(value: Any, kind: type) -> Any:
-    if kind is str:
-        return "" if value is None else str(value)
-    return float(value) if isinstance(value, int | float) else math.nan
 
 
 @contextmanager
