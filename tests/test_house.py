@@ -18,7 +18,7 @@ ROOMS = [
     "__init__", "errors", "arrays", "checked", "spelling", "units", "resources", "progress",
     "model", "physics", "kernel", "statics", "sizing", "plugins", "effects", "study", "documents",
     "grades", "measured", "workspace", "proof", "selection", "diagnosis", "analysis", "io",
-    "foreign", "reference", "sweep", "optimum", "report", "export", "api", "explore", "cli",
+    "foreign", "reference", "sweeps", "optimum", "report", "exports", "api", "explore", "cli",
     "__main__",
 ]  # fmt: skip
 """From the bottom up."""

@@ -118,7 +118,7 @@ def test_an_output_that_is_no_file_is_refused_before_the_work(
     for place in (
         "designer.analysis.analyse.Analysis.begin",
         "designer.reference.page.compute",
-        "designer.export.robot.ExportedRobot.of",
+        "designer.exports.robot.ExportedRobot.of",
         "designer.diagnosis.plan.plan",
     ):
         monkeypatch.setattr(place, work)

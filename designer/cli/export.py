@@ -13,7 +13,7 @@ from designer.errors import InputError
 
 
 class Target(StrEnum):
-    """The formats, as `designer.export.formats.FORMATS` has them."""
+    """The formats, as `designer.exports.formats.FORMATS` has them."""
 
     CASPR = "caspr"
     MOORDYN = "moordyn"
@@ -54,7 +54,7 @@ def export(
     wrong or the format cannot hold such a robot, and nothing is written.
     """
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
-    from designer.export.formats import FORMATS
+    from designer.exports.formats import FORMATS
     from designer.io.output import output_folder, require_file
 
     study, plugins = study_of(config, no_plugins)
@@ -66,7 +66,7 @@ def export(
         raise InputError.at("--output", f"{path} is no file of {to.value}", expected)
     announce_compiling()
 
-    from designer.export.robot import ExportedRobot
+    from designer.exports.robot import ExportedRobot
 
     with output_folder(path.parent) as building, ProgressBars() as bars:
         require_file(path)  # what is in the way shows before the work

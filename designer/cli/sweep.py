@@ -50,9 +50,9 @@ def sweep(
     announce_compiling()
 
     from designer.report.sweep import write_sweep
-    from designer.sweep import run as running
-    from designer.sweep.plan import read_sweep
-    from designer.sweep.run import opened, read_store, report_folder
+    from designer.sweeps import run as running
+    from designer.sweeps.plan import read_sweep
+    from designer.sweeps.run import opened, read_store, report_folder
 
     laid_out = read_sweep(plan, with_plugins=not no_plugins)
     print_left_out(laid_out.base.catalogue().problems)

@@ -243,9 +243,9 @@ def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: P
         If a file cannot be written.
     """
     from designer.report.sweep import write_sweep
-    from designer.sweep import run as running
-    from designer.sweep.plan import read_sweep
-    from designer.sweep.run import opened, read_store, report_folder
+    from designer.sweeps import run as running
+    from designer.sweeps.plan import read_sweep
+    from designer.sweeps.run import opened, read_store, report_folder
 
     laid_out = read_sweep(plan, question.plugins.with_others)
     _require_study_of(question, plan, laid_out.base.document.name)

@@ -35,7 +35,7 @@ from designer.selection.select import at_samples
 from designer.selection.verify import verify_sizes
 from designer.sizing.newton import size_poses
 from designer.study import Objective, Selection, Study, as_built_by
-from designer.sweep.plan import value_at
+from designer.sweeps.plan import value_at
 from designer.units import FORCE, LENGTH, MASS, NUMBER, Dimension
 from designer.workspace.demand import demand_of, diameter_demand, rope_demand
 from designer.workspace.refine import Demand, Worst
@@ -298,7 +298,7 @@ class Measure:
         Raises
         ------
         KeyError
-            If results never have it, see `designer.sweep.plan.value_at`.
+            If results never have it, see `designer.sweeps.plan.value_at`.
         """
         value: Any = (self.of_result or (lambda values: value_at(dict(values), self.path)))(result)
         return float(value) if isinstance(value, int | float) else None

@@ -32,7 +32,7 @@ from designer.optimum.plan import Limit, OptimisationPlan, Values, Variable, rea
 from designer.optimum.search import LINE, Examiner, Searched, Stop, Trial, search
 from designer.progress import SILENT, Advance, Reporter
 from designer.study import Study
-from designer.sweep.plan import why_not
+from designer.sweeps.plan import why_not
 
 _NEAR = 0.02
 """Of each range: two designs that are no further apart are the same place."""

@@ -41,7 +41,7 @@ from designer.selection.candidate import common_currency
 from designer.selection.prices import offered, with_prices
 from designer.spelling import did_you_mean
 from designer.study import Study
-from designer.sweep.plan import Base, Change, value_at, why_no_value
+from designer.sweeps.plan import Base, Change, value_at, why_no_value
 from designer.units import TIME, QuantityError, describe, in_SI, read_quantity
 
 _RANGE_RTOL = 1e-9

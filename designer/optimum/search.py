@@ -32,7 +32,7 @@ from designer.optimum.measures import Measure, NotHeldError, Quick, shortfall
 from designer.optimum.plan import Limit, OptimisationPlan, Values
 from designer.progress import Advance
 from designer.study import Study, require_enough_cables
-from designer.sweep.plan import why_negative, why_not
+from designer.sweeps.plan import why_negative, why_not
 
 NO_STUDY = 3.0
 """Violation of a design that is no valid study: worse than one that holds nothing."""

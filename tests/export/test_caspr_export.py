@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from designer.export.caspr import to_caspr
-from designer.export.robot import ExportedRobot
+from designer.exports.caspr import to_caspr
+from designer.exports.robot import ExportedRobot
 from designer.foreign.robot import ForeignRobot
 from designer.foreign.study import read_foreign
 from designer.model.cable import Material

@@ -13,12 +13,12 @@ import pytest
 from test_cli import STUDY, WORKSPACE, designer
 
 from designer.cli.export import Target
-from designer.export.caspr import to_caspr
-from designer.export.formats import FORMATS
-from designer.export.gltf import to_gltf
-from designer.export.moordyn import to_moordyn
-from designer.export.mujoco import to_mujoco
-from designer.export.robot import ExportedRobot, inertia_of, lost_by_all
+from designer.exports.caspr import to_caspr
+from designer.exports.formats import FORMATS
+from designer.exports.gltf import to_gltf
+from designer.exports.moordyn import to_moordyn
+from designer.exports.mujoco import to_mujoco
+from designer.exports.robot import ExportedRobot, inertia_of, lost_by_all
 from designer.io.config import read_study
 from designer.model.cable import Attached, Material
 from designer.model.load_case import LoadCase

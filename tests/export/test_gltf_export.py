@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import pyvista
 
-from designer.export.gltf import Surface, glb, to_gltf
-from designer.export.robot import ExportedRobot
+from designer.exports.gltf import Surface, glb, to_gltf
+from designer.exports.robot import ExportedRobot
 from designer.io.config import read_study
 
 POINT = """

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from designer.errors import InputError
-from designer.export.moordyn import to_moordyn
-from designer.export.robot import ExportedRobot
+from designer.exports.moordyn import to_moordyn
+from designer.exports.robot import ExportedRobot
 from designer.model.cable import Attached, Material
 from designer.model.robot import Platform, Poses, Robot
 from designer.study import Study

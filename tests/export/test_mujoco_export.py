@@ -10,8 +10,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from designer.errors import InputError
-from designer.export.mujoco import to_mujoco
-from designer.export.robot import ExportedRobot
+from designer.exports.mujoco import to_mujoco
+from designer.exports.robot import ExportedRobot
 from designer.io.config import read_study
 from designer.model.cable import Material
 from designer.model.robot import Platform, Poses, Robot

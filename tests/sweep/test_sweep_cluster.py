@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 from sweep_cases import SWEEP, written
 
-from designer.sweep.plan import read_sweep
-from designer.sweep.run import opened, run
+from designer.sweeps.plan import read_sweep
+from designer.sweeps.run import opened, run
 
 pytestmark = [
     pytest.mark.slow,

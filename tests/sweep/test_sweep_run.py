@@ -24,9 +24,9 @@ from designer.analysis import analyse as stages
 from designer.cli.commands import main
 from designer.documents.document import read_document
 from designer.errors import InputError, OutputError
-from designer.sweep import run as running
-from designer.sweep.plan import Base, SweepPlan, read_sweep, value_at, why_negative
-from designer.sweep.run import Store, opened, read_store, run
+from designer.sweeps import run as running
+from designer.sweeps.plan import Base, SweepPlan, read_sweep, value_at, why_negative
+from designer.sweeps.run import Store, opened, read_store, run
 
 REGION = """workspace: {region: {prism: anchors, inset: 2 m, z: [1, 7]}, samples: 50}
 selection: {}

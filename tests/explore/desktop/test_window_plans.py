@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QFileDialog, QLabel, QMenu, QTableView
 from window_driver import LEFT, LONGEST_MS, Driver
 
 from designer.explore.question import Long
-from designer.sweep.run import read_store
+from designer.sweeps.run import read_store
 
 OPTIMISATION = """study: yard.yaml
 objective: rope_mass

@@ -19,7 +19,7 @@ from designer import __version__
 from designer.analysis.field import RegionField, cable_curves_m
 from designer.analysis.maps import WorkspaceMaps, rope_maps, workspace_maps
 from designer.arrays import FloatArray
-from designer.export.robot import Export, ExportedRobot, lost_by_all
+from designer.exports.robot import Export, ExportedRobot, lost_by_all
 from designer.report.figures import overlay, palette
 from designer.report.figures.colours import DIAMETER, UTILISATION, MapQuantity, Steps, tension_of
 from designer.report.figures.parts import hull_faces

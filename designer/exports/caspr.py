@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from designer.arrays import FloatArray
 from designer.errors import one_line
-from designer.export.robot import (
+from designer.exports.robot import (
     Export,
     ExportedRobot,
     inertia_of,

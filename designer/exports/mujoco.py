@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 
 from designer.arrays import FloatArray, frozen_array
 from designer.errors import InputError, one_line
-from designer.export.robot import (
+from designer.exports.robot import (
     Export,
     ExportedRobot,
     inertia_of,

@@ -27,7 +27,7 @@ from designer.errors import DesignerError, InputError, OutputError, described
 from designer.io.output import explained
 from designer.io.process import SPAWN, children_are_deaf, end_with_parent
 from designer.progress import SILENT, Reporter
-from designer.sweep.plan import SweepPlan, solve_points
+from designer.sweeps.plan import SweepPlan, solve_points
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,7 +14,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.errors import InputError
-from designer.export.robot import Export, ExportedRobot, inertia_of, levelled, lost_by_all, numbers
+from designer.exports.robot import Export, ExportedRobot, inertia_of, levelled, lost_by_all, numbers
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.robot import Robot
 from designer.statics.inverse import Statics

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from designer.export.caspr import to_caspr
-from designer.export.gltf import to_gltf
-from designer.export.moordyn import to_moordyn
-from designer.export.mujoco import to_mujoco
-from designer.export.robot import Export, ExportedRobot
-from designer.export.workshop import to_csv
+from designer.exports.caspr import to_caspr
+from designer.exports.gltf import to_gltf
+from designer.exports.moordyn import to_moordyn
+from designer.exports.mujoco import to_mujoco
+from designer.exports.robot import Export, ExportedRobot
+from designer.exports.workshop import to_csv
 
 
 @dataclass(frozen=True, slots=True)
