@@ -34,8 +34,7 @@ _HOMES = {
     "designer.model.verdict": "Verdict",
     "designer.model.winches": "Winches",
     "designer.model.workspace": "Workspace",
-    "designer.optimum.optimise": "optimise",
-    "designer.optimum.result": "Optimum",
+    "designer.optimum.optimise": "Optimum optimise",
     "designer.resources": "example_file example_names",
     "designer.study": "CableGroup DeclaredEffect RopeLimits Selection Study",
 }
@@ -78,8 +77,7 @@ if TYPE_CHECKING:
     from designer.model.verdict import Verdict
     from designer.model.winches import Winches
     from designer.model.workspace import Workspace
-    from designer.optimum.optimise import optimise
-    from designer.optimum.result import Optimum
+    from designer.optimum.optimise import Optimum, optimise
     from designer.resources import example_file, example_names
     from designer.study import CableGroup, DeclaredEffect, RopeLimits, Selection, Study
 

@@ -245,7 +245,7 @@ def sweep(
     """
     from designer.sweeps import run as running
     from designer.sweeps.plan import read_sweep
-    from designer.sweeps.store import opened, read_store
+    from designer.sweeps.run import opened, read_store
 
     scratch = TemporaryFolder()
     path = scratch.folder / "sweep.zarr" if store is None else Path(store)

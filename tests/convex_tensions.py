@@ -1,6 +1,6 @@
 """The best tensions of straight cables by convex programmes in CVXPY: the readable reference.
 
-Many poses are one block-diagonal problem. `designer.statics.distribution` is tested against it.
+Many poses are one block-diagonal problem. `designer.statics.inverse` is tested against it.
 """
 
 from __future__ import annotations

@@ -6,9 +6,9 @@ import numpy as np
 
 from designer.model.cable import Cable, Material
 from designer.model.robot import Poses, Robot
-from designer.reference import robots
+from designer.reference import cases
 
-COGIRO = robots.COGIRO
+COGIRO = cases.COGIRO
 COGIRO_CABLE = Material(7800.0, 100e9, 1e9).cable(0.004)
 
 ROPE = Cable(0.03, 3.5, 5e7, 2e5)

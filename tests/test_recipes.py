@@ -28,7 +28,7 @@ from designer.report.render import render_html
 from designer.resources import example_file
 from designer.selection import criteria
 from designer.statics.inverse import Statics
-from designer.workspace.result import Census
+from designer.workspace.sweep import Census
 
 
 def test_every_verdict_has_its_part_of_the_bar() -> None:

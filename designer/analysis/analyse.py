@@ -56,10 +56,8 @@ from designer.sizing.newton import Sizing, size_poses
 from designer.statics.free_motion import FreeMotion, free_motion
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Study, as_built_by, require_answerable
-from designer.workspace.hanging import HangingCables
-from designer.workspace.result import WorkspaceMap
 from designer.workspace.section import section_of_workspace
-from designer.workspace.sweep import map_workspace
+from designer.workspace.sweep import HangingCables, WorkspaceMap, map_workspace
 
 if TYPE_CHECKING:
     from designer.report.plot import Plots

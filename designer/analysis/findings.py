@@ -27,9 +27,7 @@ from designer.statics.free_motion import FreeMotion
 from designer.statics.inverse import solve_sagging
 from designer.statics.sizes import is_quick
 from designer.workspace.demand import is_left_out
-from designer.workspace.result import WorkspaceMap
-from designer.workspace.store import open_sweep
-from designer.workspace.sweep import map_workspace
+from designer.workspace.sweep import WorkspaceMap, map_workspace, open_sweep
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis

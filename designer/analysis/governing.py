@@ -17,9 +17,15 @@ from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult, governing
 from designer.selection.criteria import is_paid_out, rope_diameter_m
-from designer.statics.inverse import MasslessStatics, Statics, solve_massless, solve_sagging
+from designer.statics.inverse import (
+    MasslessStatics,
+    Statics,
+    sag_m,
+    solve_massless,
+    solve_sagging,
+    stretch_m,
+)
 from designer.statics.modes import cable_frequencies_Hz
-from designer.statics.shape import sag_m, stretch_m
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis

@@ -22,8 +22,7 @@ from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics, solve_massless
 from designer.study import Study, as_built_by
 from designer.workspace.demand import demand_of, in_worst_turn, is_left_out
-from designer.workspace.result import WorkspaceMap
-from designer.workspace.store import columns
+from designer.workspace.sweep import WorkspaceMap, columns
 
 _MOST_POINTS = 3000
 _RINGS, _SPOKES = 45, 120

@@ -14,8 +14,7 @@ from designer.model.space import named_place
 from designer.progress import Advance
 from designer.selection.criteria import Criterion, starts_of_each
 from designer.selection.requirements import CaseLoads, Evaluation, equilibria, evaluate
-from designer.statics.inverse import Statics
-from designer.statics.reactions import platform_branch_N, reaction_N, winch_branch_N
+from designer.statics.inverse import Statics, platform_branch_N, reaction_N, winch_branch_N
 from designer.workspace.refine import ONE_CLIMB
 
 EXTREMES = ("largest", "horizontal", "up", "down")

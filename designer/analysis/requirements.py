@@ -39,7 +39,7 @@ from designer.sizing.newton import size_poses
 from designer.statics.free_motion import FreeMotion
 from designer.study import Selection, Study
 from designer.workspace.demand import tension_demand
-from designer.workspace.result import WorkspaceMap
+from designer.workspace.sweep import WorkspaceMap
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis

@@ -20,7 +20,7 @@ from designer.proof.prove import Proof
 from designer.selection.cases import CaseResult
 from designer.statics.cable_loss import Fate
 from designer.study import Study
-from designer.workspace.interference import Interference
+from designer.workspace.clearance import Interference
 
 _OF_THE_CHOICE = ("stiffness", "interference", "hanging")
 """Of ``workspace``: told of the chosen rope, so that it has to be chosen."""

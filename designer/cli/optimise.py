@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 from designer.cli.options import NoPlugins, Template, argument, output_option
 
 if TYPE_CHECKING:
-    from designer.optimum.result import Optimum
+    from designer.optimum.optimise import Optimum
 
 
 def optimise(

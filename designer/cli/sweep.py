@@ -52,7 +52,7 @@ def sweep(
     from designer.report.sweep import write_sweep
     from designer.sweeps import run as running
     from designer.sweeps.plan import read_sweep
-    from designer.sweeps.store import opened, read_store, report_folder
+    from designer.sweeps.run import opened, read_store, report_folder
 
     laid_out = read_sweep(plan, with_plugins=not no_plugins)
     print_left_out(laid_out.base.catalogue().problems)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from designer.selection.groups.result import GroupChoice
     from designer.selection.result import SelectionResult
     from designer.study import Selection, Study
-    from designer.workspace.result import WorkspaceMap
+    from designer.workspace.sweep import WorkspaceMap
 
 
 _MOST_TURNS = 12

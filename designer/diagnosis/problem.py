@@ -23,10 +23,8 @@ from designer.model.load_case import AIR_DENSITY_KG_PER_M3
 from designer.model.machine import Machine
 from designer.model.measured_data import EVEN, Measured, Noise
 from designer.model.robot import Poses
-from designer.statics.internal import InternalBalance
+from designer.statics.balance import InternalBalance, imbalance, solve_taut, solve_underactuated
 from designer.statics.inverse import Statics, solve_sagging
-from designer.statics.taut import solve_taut
-from designer.statics.underactuated import imbalance, solve_underactuated
 
 
 def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None) -> Readings:

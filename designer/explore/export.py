@@ -290,7 +290,7 @@ def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: P
     from designer.report.sweep import write_sweep
     from designer.sweeps import run as running
     from designer.sweeps.plan import read_sweep
-    from designer.sweeps.store import opened, read_store, report_folder
+    from designer.sweeps.run import opened, read_store, report_folder
 
     laid_out = read_sweep(plan, question.plugins.with_others)
     _require_study_of(question, plan, laid_out.base.document.name)

@@ -14,9 +14,8 @@ from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable, Cables
 from designer.model.load_case import STATIC
 from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
-from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.inverse import Statics, exit_angle_rad, sag_m, solve_sagging, stretch_m
 from designer.statics.rest import resting_places
-from designer.statics.shape import exit_angle_rad, sag_m, stretch_m
 from designer.statics.stiffness import largest_displacement_m_per_N
 
 

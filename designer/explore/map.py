@@ -22,14 +22,12 @@ from designer.selection.candidate import undominated
 from designer.selection.cases import Cases, governing, searched_all, together
 from designer.selection.groups.trials import verify_groups
 from designer.selection.verify import Verification
-from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.inverse import Statics, sag_ratio, solve_sagging
 from designer.statics.modes import frequencies_Hz
-from designer.statics.shape import sag_ratio
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.workspace.demand import demand_of, in_worst_turn, is_left_out, size_worst
-from designer.workspace.result import WorkspaceMap
 from designer.workspace.section import section_of_workspace
-from designer.workspace.sweep import map_workspace
+from designer.workspace.sweep import WorkspaceMap, map_workspace
 
 _PIECE = 2**12
 """Places in one call of the solver: what a pose that is waited for has to wait at most."""

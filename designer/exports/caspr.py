@@ -23,7 +23,6 @@ from designer.exports.robot import (
     numbers,
     xml_document,
 )
-from designer.model.region import Region
 from designer.model.robot import Platform, Poses, Robot
 
 JOINTS: dict[tuple[bool, bool], tuple[str, list[int], int]] = {
@@ -48,14 +47,18 @@ def to_caspr(exported: ExportedRobot, stem: str) -> Export:
         assert space is not None
         pose = Poses.at(space.region.bounds_m.mean(axis=0))
         lost.append("a pose of the study; q_initial is the middle of the region, not turned")
-    robot, pose, turned = levelled(exported.robot, pose)
-    if turned:
-        lost.append(turned)
+    robot, pose, frame_note = levelled(exported.robot, pose)
+    if frame_note:
+        lost.append(frame_note)
     lost += _lost_of(robot.platform)
     limits_m = None
     if space is not None:
-        limits_m = None if turned or space.region.is_discrete else space.region.bounds_m
-        lost += _lost_of_region(space.region, limits_m)
+        region = space.region
+        limits_m = None if frame_note or region.is_discrete else region.bounds_m
+        if limits_m is None:
+            lost.append("the region of the workspace")
+        elif not region.contains(np.stack(np.meshgrid(*limits_m.T), axis=-1).reshape(-1, 3)).all():
+            lost.append("the shape of the region: q_min and q_max are the box around it")
     heading = exported.heading(lost, names_cables=False)
     files = {
         f"{stem}_bodies.xml": xml_document(heading, _bodies(study.name, robot, pose, limits_m)),
@@ -76,20 +79,16 @@ def _lost_of(body: Platform) -> list[str]:
     return lost
 
 
-def _lost_of_region(region: Region, limits_m: FloatArray | None) -> list[str]:
-    if limits_m is None:
-        return ["the region of the workspace"]
-    corners = np.stack(np.meshgrid(*limits_m.T), axis=-1).reshape(-1, 3)
-    if region.contains(corners).all():
-        return []
-    return ["the shape of the region: q_min and q_max are the box around it"]
-
-
 def _bodies(name: str, robot: Robot, pose: Poses, limits_m: FloatArray | None) -> Iterator[str]:
     body = robot.platform
     type_, axes, n_angles = JOINTS[robot.is_planar, robot.is_point_mass]
     base = [0.0, float(pose.position_m[1]) if robot.is_planar else 0.0, 0.0]
-    q = {"q_initial": [*pose.position_m[axes], *_angles_rad(pose, n_angles)]}
+    angles_rad: list[float] = []
+    if n_angles == 1:  # about y, the normal of the plane
+        angles_rad = [float(np.arctan2(pose.rotation[0, 2], pose.rotation[0, 0]))]
+    elif n_angles == 3:  # about the body's own x, y and z
+        angles_rad = Rotation.from_matrix(pose.rotation).as_euler("XYZ").tolist()
+    q = {"q_initial": [*pose.position_m[axes], *angles_rad]}
     if limits_m is not None:
         for key, end, angle in zip(("q_min", "q_max"), limits_m, (-np.pi, np.pi), strict=True):
             q[key] = [*end[axes], *[angle] * n_angles]
@@ -108,14 +107,6 @@ def _bodies(name: str, robot: Robot, pose: Poses, limits_m: FloatArray | None) -
     yield "</link_rigid>"
     yield "</links>"
     yield "</bodies_system>"
-
-
-def _angles_rad(pose: Poses, count: int) -> list[float]:
-    """Return angles about the body's own x, y and z, or the one about y that turns a plane."""
-    if count == 1:
-        return [float(np.arctan2(pose.rotation[0, 2], pose.rotation[0, 0]))]
-    angles = Rotation.from_matrix(pose.rotation).as_euler("XYZ")
-    return angles.tolist() if count else []
 
 
 def _cables(robot: Robot) -> Iterator[str]:

@@ -1,18 +1,24 @@
-"""What the report draws in space as binary glTF: robot, region and maps, a scene for each map."""
+"""What the report draws in space as binary glTF: robot, region and maps, a scene for each map.
+
+Binary glTF 2.0 (ISO/IEC 12113) holds triangles with colours, in scenes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import json
+import struct
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from designer import __version__
 from designer.analysis.field import RegionField, cable_curves_m
 from designer.analysis.maps import WorkspaceMaps, rope_maps, workspace_maps
 from designer.arrays import FloatArray
-from designer.exports.glb import Surface, glb
 from designer.exports.robot import Export, ExportedRobot, lost_by_all
 from designer.report.figures import overlay, palette
 from designer.report.figures.colours import DIAMETER, UTILISATION, MapQuantity, Steps, tension_of
@@ -29,8 +35,117 @@ from designer.statics.inverse import Statics
 if TYPE_CHECKING:
     from pyvista import PolyData
 
+
+_MAGIC, _VERSION, _JSON, _BINARY = 0x46546C67, 2, 0x4E4F534A, 0x004E4942
+_FLOAT, _BYTE = 5126, 5121
 CABLE, BALL = 0.0012, 0.006
 """Drawn radii of cables and points over the size of the robot; ropes would be too thin to see."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surface:
+    """Triangles under one name."""
+
+    name: str  #: of the node and its mesh
+    triangles_m: FloatArray  #: (n, 3, 3) corners [m]
+    #: (3,) red, green and blue from 0 to 1 as on a screen, of all or of each triangle
+    colours: FloatArray
+    #: whether light falls on it; else its colours are what a scale says they are
+    is_lit: bool = True
+    extras: Mapping[str, Any] = field(default_factory=dict)  #: what else is to be known of it
+
+
+def glb(
+    scenes: Mapping[str, Sequence[Surface]],
+    shared: Sequence[Surface],
+    turn: FloatArray,
+    asset: Mapping[str, Any],
+) -> bytes:
+    """Return a file of scenes, each with its own surfaces and the shared ones; the first is shown.
+
+    ``turn`` (3, 3) leads from the frame of the surfaces to one whose z axis points up.
+    """
+    buffers = _Buffers()
+    y_up = np.eye(4)
+    y_up[:3, :3] = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]) @ turn
+    matrix = y_up.ravel(order="F").tolist()
+    common = buffers.group("robot", shared, matrix)
+    listed = [
+        {"name": name, "nodes": [common, buffers.group(name, surfaces, matrix)]}
+        if surfaces
+        else {"name": name, "nodes": [common]}
+        for name, surfaces in scenes.items()
+    ]
+    return buffers.file({"asset": {"version": "2.0", **asset}, "scene": 0, "scenes": listed})
+
+
+class _Buffers:
+    """Collects nodes, meshes and their bytes."""
+
+    def __init__(self) -> None:
+        self._bytes = bytearray()
+        self._lists: dict[str, list[dict[str, Any]]] = {
+            name: [] for name in ("nodes", "meshes", "accessors", "bufferViews")
+        }
+
+    def _add(self, name: str, entry: dict[str, Any]) -> int:
+        self._lists[name].append(entry)
+        return len(self._lists[name]) - 1
+
+    def group(self, name: str, surfaces: Sequence[Surface], matrix: list[float]) -> int:
+        """Add surfaces below one node and return its number."""
+        children = [self._surface(surface) for surface in surfaces]
+        return self._add("nodes", {"name": name, "matrix": matrix, "children": children})
+
+    def _surface(self, surface: Surface) -> int:
+        points = surface.triangles_m.reshape(-1, 3).astype(np.float32)
+        # Colours of vertices are linear in light (sRGB, IEC 61966-2-1).
+        screen_rgb = np.broadcast_to(surface.colours, (len(surface.triangles_m), 3))
+        linear = np.where(
+            screen_rgb <= 0.04045, screen_rgb / 12.92, ((screen_rgb + 0.055) / 1.055) ** 2.4
+        )
+        colours = np.ones((len(points), 4))
+        colours[:, :3] = np.repeat(linear, 3, axis=0)
+        ends = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
+        attributes = {
+            "POSITION": self._accessor(points, _FLOAT, "VEC3", ends),
+            "COLOR_0": self._accessor(
+                np.round(255.0 * colours).astype(np.uint8), _BYTE, "VEC4", {"normalized": True}
+            ),
+        }
+        primitive = {"attributes": attributes, "material": 0 if surface.is_lit else 1}
+        mesh = self._add("meshes", {"name": surface.name, "primitives": [primitive]})
+        node = {"name": surface.name, "mesh": mesh}
+        return self._add("nodes", node | ({"extras": surface.extras} if surface.extras else {}))
+
+    def _accessor(
+        self, values: NDArray[Any], component: int, kind: str, more: Mapping[str, Any]
+    ) -> int:
+        view = {"buffer": 0, "byteOffset": len(self._bytes), "byteLength": values.nbytes}
+        self._bytes += values.tobytes()
+        number = self._add("bufferViews", view | {"target": 34962})
+        entry = {"bufferView": number, "componentType": component, "count": len(values)}
+        return self._add("accessors", entry | {"type": kind, **more})
+
+    def file(self, head: Mapping[str, Any]) -> bytes:
+        """Return the whole as one file."""
+        unlit = "KHR_materials_unlit"
+        look = {"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8}}
+        document = {
+            **head,
+            **self._lists,
+            "extensionsUsed": [unlit],
+            "materials": [
+                {"name": "lit", "doubleSided": True, **look},
+                {"name": "scale", "doubleSided": True, **look, "extensions": {unlit: {}}},
+            ],
+            "buffers": [{"byteLength": len(self._bytes)}],
+        }
+        text = json.dumps(document, separators=(",", ":"), allow_nan=False).encode()
+        text += b" " * (-len(text) % 4)
+        parts = struct.pack("<II", len(text), _JSON) + text
+        parts += struct.pack("<II", len(self._bytes), _BINARY) + bytes(self._bytes)
+        return struct.pack("<III", _MAGIC, _VERSION, 12 + len(parts)) + parts
 
 
 def to_gltf(exported: ExportedRobot, stem: str) -> Export:
@@ -109,14 +224,14 @@ def _map(maps: WorkspaceMaps, quantity: MapQuantity, size_m: float) -> Iterator[
     steps = scale_of(maps, quantity)
     if not maps.has_area:
         yield from _points(maps.section, quantity, steps, BALL * size_m)
-    for name, field in maps.shell.items():
-        counted = counted_surface(field, quantity)
+    for name, side in maps.shell.items():
+        counted = counted_surface(side, quantity)
         if steps is not None and counted.n_cells > 0:
             yield from _coloured(f"{name}: {quantity.title}", counted, quantity, steps)
-        meanings = dict(overlay.meanings([field]))
+        meanings = dict(overlay.meanings([side]))
         parts = {
-            palette.WARNING: failed_surface(field),
-            palette.LEFT_OUT: left_out_surface(field, quantity),
+            palette.WARNING: failed_surface(side),
+            palette.LEFT_OUT: left_out_surface(side, quantity),
         }
         for colour, part in parts.items():
             if part.n_cells > 0:
@@ -153,9 +268,9 @@ def _points(
     if steps is not None and finite.any():
         colours = steps.colours_of(steps.norm(values[finite])) / 255.0
         balls = _ball_triangles(places[finite], radius_m)
-        each = np.repeat(colours, len(balls) // len(colours), axis=0)
+        rgb = np.repeat(colours, len(balls) // len(colours), axis=0)
         legend = _legend(quantity, steps)
-        yield Surface(quantity.title, balls, each, is_lit=False, extras=legend)
+        yield Surface(quantity.title, balls, rgb, is_lit=False, extras=legend)
     for colour, meaning in overlay.meanings([field]):
         is_it = field.is_infeasible if colour == palette.WARNING else field.is_left_out
         yield _balls(meaning, places[is_it], radius_m, colour)

@@ -59,7 +59,7 @@ def to_moordyn(exported: ExportedRobot, stem: str) -> Export:
         problem = "is unlimited, and MoorDyn's lines stretch"
         fault = exported.study.source.fault("cable.youngs_modulus", problem, "a finite modulus")
         raise InputError([fault])
-    robot, poses, turned = levelled(exported.robot, statics.poses)
+    robot, poses, frame_note = levelled(exported.robot, statics.poses)
     load = _Load.of(robot, poses.rotation)
     # MoorDyn wants bodies below the water line, wherever that is.
     down_m = 0.0 if robot.is_point_mass else max(float(poses.position_m[2]), 0.0)
@@ -69,7 +69,7 @@ def to_moordyn(exported: ExportedRobot, stem: str) -> Export:
     lost = [
         *_lost(robot, load, down_m),
         *exported.lost_of_cables,
-        *([turned] if turned else []),
+        *([frame_note] if frame_note else []),
         *lost_by_all(exported.study),
     ]
     lines = [
@@ -136,8 +136,8 @@ def _types(exported: ExportedRobot, statics: Statics) -> Iterator[str]:
     design = exported.design
     assert design is not None
     cable = design.cable
-    each = [cable] * len(mass) if isinstance(cable, Cable) else cable.each
-    for k, figures in enumerate(zip(each, mass, stiffness, strict=True), start=1):
+    cables = [cable] * len(mass) if isinstance(cable, Cable) else cable.each
+    for k, figures in enumerate(zip(cables, mass, stiffness, strict=True), start=1):
         rope, mass_kg_per_m, stiffness_N = figures
         values = numbers(rope.diameter_m, mass_kg_per_m, stiffness_N, -DAMPING_RATIO)
         yield f"cable{k} {values} 0 0 0 0 0"
@@ -170,8 +170,8 @@ def _points(
         rows.append((_held(load), place_m, load.mass_kg))
     else:
         rows += [("Body1", attachment_m, 0.0) for attachment_m in attachments_m]
-    for number, (held, point_m, mass_kg) in enumerate(rows, start=1):
-        yield f"{number} {held} {numbers(*point_m, mass_kg)} 0 0 0"
+    for number, (attachment, point_m, mass_kg) in enumerate(rows, start=1):
+        yield f"{number} {attachment} {numbers(*point_m, mass_kg)} 0 0 0"
 
 
 def _lines(statics: Statics) -> Iterator[str]:

@@ -40,22 +40,12 @@ LONGEST_STEP_S, STEP = 0.002, 0.1
 
 @dataclass(frozen=True, eq=False)
 class _Springs:
-    """The cables as springs.
+    """The cables as springs."""
 
-    Parameters
-    ----------
-    robot : Robot
-        With straight cables from where they leave their pulleys in the reference pose.
-    pose : Poses
-        That pose.
-    tension_N, axial_stiffness_N : array (n_cables,)
-        There, and EA [N].
-    """
-
-    robot: Robot
-    pose: Poses
-    tension_N: FloatArray
-    axial_stiffness_N: FloatArray
+    robot: Robot  #: with straight cables from where they leave their pulleys in the reference pose
+    pose: Poses  #: that pose
+    tension_N: FloatArray  #: (n_cables,) there [N]
+    axial_stiffness_N: FloatArray  #: (n_cables,)
 
     def distance_m(self, pose: Poses) -> FloatArray:
         """Return the lengths of the chords in a pose (n_cables,) [m]."""
@@ -195,7 +185,11 @@ def _body(springs: _Springs) -> Iterator[str]:
     inertia = np.eye(3) * body.mass_kg if robot.is_point_mass else inertia_of(body)
     moments = [inertia[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
     yield f'<body name="platform" pos="{numbers(*pose.position_m)}" quat="{_quaternion(pose)}">'
-    yield from _joints(robot, pose)
+    if not _axes(robot):
+        yield '<freejoint name="free"/>'
+    for number, (kind, axis) in enumerate(_axes(robot), start=1):
+        local = axis @ pose.rotation  # an axis of MuJoCo's is along the body
+        yield f'<joint name="joint{number}" type="{kind}" axis="{numbers(*local)}"/>'
     yield (
         f'<inertial pos="{centre}" mass="{numbers(body.mass_kg)}" '
         f'fullinertia="{numbers(*moments)}"/>'
@@ -218,14 +212,6 @@ def _axes(robot: Robot) -> list[tuple[str, FloatArray]]:
         slides = [("slide", along), ("slide", up)]
         return slides if robot.is_point_mass else [*slides, ("hinge", across)]
     return [("slide", axis) for axis in np.eye(3)] if robot.is_point_mass else []
-
-
-def _joints(robot: Robot, pose: Poses) -> Iterator[str]:
-    if not _axes(robot):
-        yield '<freejoint name="free"/>'
-    for number, (kind, axis) in enumerate(_axes(robot), start=1):
-        local = axis @ pose.rotation  # an axis of MuJoCo's is along the body
-        yield f'<joint name="joint{number}" type="{kind}" axis="{numbers(*local)}"/>'
 
 
 def _shape(robot: Robot, size_m: float) -> str:
@@ -278,8 +264,8 @@ def _key(name: str, springs: _Springs, pose: Poses, motors_N: FloatArray) -> str
 def _coordinates(springs: _Springs, pose: Poses) -> Sequence[float]:
     """Return the joints' coordinates, counted from the reference pose."""
     moved_m = pose.position_m - springs.pose.position_m
-    turned = Rotation.from_matrix(pose.rotation @ springs.pose.rotation.T).as_rotvec()
+    rotation_vector = Rotation.from_matrix(pose.rotation @ springs.pose.rotation.T).as_rotvec()
     return [
-        float(axis @ (turned if kind == "hinge" else moved_m))
+        float(axis @ (rotation_vector if kind == "hinge" else moved_m))
         for kind, axis in _axes(springs.robot)
     ]

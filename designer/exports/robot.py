@@ -18,7 +18,6 @@ from designer.grades.registry import Catalogue
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
 from designer.model.winches import Winches
-from designer.model.workspace import Workspace
 from designer.progress import SILENT, Reporter
 from designer.selection.qualities import DesignCable
 from designer.statics.inverse import Statics, solve_sagging
@@ -32,31 +31,18 @@ _READ = ("selection.chosen",)
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """What is written for another program.
+    """What is written for another program."""
 
-    Parameters
-    ----------
-    files : mapping of str to bytes
-        Content of each file by its name, that of the user first.
-    lost : tuple of str
-        What the study has and the files do not, a line each; it stands in the files as well.
-    """
-
-    files: Mapping[str, bytes]
+    files: Mapping[str, bytes]  #: content of each file by its name, that of the user first
+    #: what the study has and the files do not, a line each; it stands in the files as well
     lost: tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class ExportedRobot:
-    """A study as the formats take it; what is solved for it is solved when it is first read.
+    """A study as the formats take it; what is solved for it is solved when it is first read."""
 
-    Parameters
-    ----------
-    analysis : Analysis
-        Of the study; see `of`.
-    """
-
-    analysis: Analysis
+    analysis: Analysis  #: of the study; see `of`
 
     @classmethod
     def of(
@@ -199,15 +185,20 @@ def lost_by_all(study: Study, taken: Sequence[str] = ()) -> list[str]:
         names = ", ".join(case.name for case in study.load_cases)
         lost.append(f"load cases ({names}); the platform is at rest under the loads of robot")
     if space is not None:
-        lost += _lost_of(space)
+        limits = {"clearance": space.clearance_m, "floor": space.floor_m}
+        named = [name for name, value in limits.items() if value is not None]
+        if named:
+            lost.append(f"what the workspace asks for: {', '.join(named)}")
+        if space.region.is_discrete:
+            lost.append("the listed poses or the path of the workspace, with its times")
     if study.selection is not None:
         lost.append("how the rope was chosen, with its limits, its factors of safety and a proof")
     winches, plain = study.robot.winches, Winches()
     changed = [
-        each.name
-        for each in fields(winches)
-        if each.name not in taken
-        and not np.array_equal(getattr(winches, each.name), getattr(plain, each.name))
+        field.name
+        for field in fields(winches)
+        if field.name not in taken
+        and not np.array_equal(getattr(winches, field.name), getattr(plain, field.name))
     ]
     if changed:
         lost.append(f"what the study has of its winches: {', '.join(changed)}")
@@ -222,18 +213,6 @@ def lost_by_all(study: Study, taken: Sequence[str] = ()) -> list[str]:
     return lost
 
 
-def _lost_of(workspace: Workspace) -> list[str]:
-    asked = {
-        "clearance": workspace.clearance_m,
-        "floor": workspace.floor_m,
-    }
-    named = [name for name, value in asked.items() if value is not None]
-    lost = [f"what the workspace asks for: {', '.join(named)}"] if named else []
-    if workspace.region.is_discrete:
-        lost.append("the listed poses or the path of the workspace, with its times")
-    return lost
-
-
 def numbers(*values: float) -> str:
     """Return numbers with all their digits; 0.0 makes a plain zero of −0."""
     return " ".join(repr(float(value) + 0.0) for value in values)
@@ -242,8 +221,8 @@ def numbers(*values: float) -> str:
 def xml_document(heading: Iterable[str], lines: Iterable[str]) -> bytes:
     """Return an XML file with a comment at its head."""
     comment = [re.sub("-(?=-)", "- ", line) for line in heading]  # two would end a comment
-    first = ['<?xml version="1.0" encoding="utf-8"?>', "<!--", *comment, "-->"]
-    return ("\n".join([*first, *lines]) + "\n").encode()
+    head = ['<?xml version="1.0" encoding="utf-8"?>', "<!--", *comment, "-->"]
+    return ("\n".join([*head, *lines]) + "\n").encode()
 
 
 def inertia_of(body: Platform) -> FloatArray:
@@ -265,21 +244,21 @@ def levelled(robot: Robot, poses: Poses) -> tuple[Robot, Poses, str]:
     For programs that know no other gravity. A planar robot then lies in the x-z plane. The text is
     empty where nothing is turned.
     """
-    turn = robot.level
-    if np.allclose(turn, np.eye(3), rtol=0.0, atol=1e-15):
+    rotation = robot.level
+    if np.allclose(rotation, np.eye(3), rtol=0.0, atol=1e-15):
         return robot, poses, ""
     body, winches = robot.platform, robot.winches
-    wrench_N = (body.wrench_N.reshape(2, 3) @ turn.T).ravel()
+    wrench_N = (body.wrench_N.reshape(2, 3) @ rotation.T).ravel()
     if winches.positions_m is not None:
-        winches = replace(winches, positions_m=frozen_array(winches.positions_m @ turn.T))
+        winches = replace(winches, positions_m=frozen_array(winches.positions_m @ rotation.T))
     level = replace(
         robot,
-        exit_points_m=frozen_array(robot.exit_points_m @ turn.T),
+        exit_points_m=frozen_array(robot.exit_points_m @ rotation.T),
         platform=replace(body, wrench_N=frozen_array(wrench_N)),
         tilt_rad=frozen_array(np.zeros(2)),
         gravity_direction=frozen_array([0.0, 0.0, -1.0]),
         winches=winches,
     )
-    rows = "; ".join(" ".join(f"{x:.9g}" for x in row) for row in turn.tolist())
+    rows = "; ".join(" ".join(f"{x:.9g}" for x in row) for row in rotation.tolist())
     note = f"the frame of the study: coordinates here are [{rows}] times those"
-    return level, Poses(poses.position_m @ turn.T, turn @ poses.rotation), note
+    return level, Poses(poses.position_m @ rotation.T, rotation @ poses.rotation), note

@@ -305,11 +305,11 @@ def _tension_limits(
 ) -> tuple[float, float | tuple[float | None, ...] | None]:
     """Return the least tension of all cables, and the largest of all or of each."""
     cables = _cables(cable_set)
-    given = {force for cable in cables if (force := _force(cable, "force_min")) is not None}
-    if len(given) > 1:
+    forces_N = {force for cable in cables if (force := _force(cable, "force_min")) is not None}
+    if len(forces_N) > 1:
         remarks["robot.tension_min"] = ("The file's cables differ; this is the largest.",)
-    each = tuple(largest_tension_N(_force(cable, "force_max"), remarks) for cable in cables)
-    return max((0.0, *given)), each if len(set(each)) > 1 else each[0]
+    limits_N = tuple(largest_tension_N(_force(cable, "force_max"), remarks) for cable in cables)
+    return max((0.0, *forces_N)), limits_N if len(set(limits_N)) > 1 else limits_N[0]
 
 
 def _force(cable: Element, name: str) -> float | None:

@@ -64,8 +64,8 @@ class ForeignRobot:
             return self
         point, position_m = self.attachments_m[0], None
         if self.position_m is not None and (self.euler_xyz_rad or not any(point)):
-            turn = Rotation.from_euler("XYZ", self.euler_xyz_rad or ORIGIN)
-            position_m = moved(self.position_m, turn.apply(point).tolist())
+            rotation = Rotation.from_euler("XYZ", self.euler_xyz_rad or ORIGIN)
+            position_m = moved(self.position_m, rotation.apply(point).tolist())
         limits_m = self.limits_m and tuple(
             (low + d, high + d) for (low, high), d in zip(self.limits_m, point, strict=True)
         )

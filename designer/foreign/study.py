@@ -65,7 +65,14 @@ def study_text(robot: ForeignRobot, answers: ImportAnswers) -> str:
     InputError
         If the platform moves in a plane that is not upright.
     """
-    _require_upright(robot, answers.gravity or _DOWN)
+    gravity, normal = answers.gravity or _DOWN, robot.plane_normal
+    if normal is not None and abs(np.dot(normal, gravity)) > 1e-9 * np.linalg.norm(gravity):
+        problem = (
+            "the platform moves in a plane that is not upright, so that nothing but a table "
+            "carries its weight"
+        )
+        expected = "an upright plane; --gravity where the frame is drawn lying, such as 0,-1,0"
+        raise InputError.at(robot.file, problem, expected)
     if answers.position_m is not None:
         robot = replace(robot, position_m=answers.position_m, euler_xyz_rad=(0.0, 0.0, 0.0))
     lines = [
@@ -84,14 +91,19 @@ def study_text(robot: ForeignRobot, answers: ImportAnswers) -> str:
         *_pose(robot),
         "",
         *_workspace(robot, answers),
-        *_effects(robot),
     ]
+    effects = list(_remarks(robot, "effects"))
+    if robot.pulley_radius_m is not None:
+        radius = _number(robot.pulley_radius_m)
+        effects.append(f"effects: {{pulley_radius: {{radius_m: {radius}}}}}")
+    if effects:
+        lines += ["", *effects]
     return "\n".join(lines) + "\n"
 
 
 def gaps(text: str) -> tuple[Gap, ...]:
     """Return the fields of a study's text that are to be filled in."""
-    found, path = [], list[tuple[int, str]]()
+    fields, path = [], list[tuple[int, str]]()
     for number, line in enumerate(text.splitlines(), 1):
         plain = line.split("#", 1)[0].rstrip()
         name, colon, value = plain.strip().partition(":")
@@ -101,19 +113,8 @@ def gaps(text: str) -> tuple[Gap, ...]:
         path = [*((d, n) for d, n in path if d < depth), (depth, name)]
         if value.strip() == FILL_IN:
             field = ".".join(name for _, name in path)
-            found.append(Gap(field, number, _OPTIONS[field]))
-    return tuple(found)
-
-
-def _require_upright(robot: ForeignRobot, gravity: Point) -> None:
-    normal = robot.plane_normal
-    if normal is not None and abs(np.dot(normal, gravity)) > 1e-9 * np.linalg.norm(gravity):
-        problem = (
-            "the platform moves in a plane that is not upright, so that nothing but a table "
-            "carries its weight"
-        )
-        expected = "an upright plane; --gravity where the frame is drawn lying, such as 0,-1,0"
-        raise InputError.at(robot.file, problem, expected)
+            fields.append(Gap(field, number, _OPTIONS[field]))
+    return tuple(fields)
 
 
 def _robot(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:
@@ -147,8 +148,8 @@ def _winches(robot: ForeignRobot, *, has_workspace: bool) -> Iterator[str]:
     largest = robot.tension_max_N
     if largest is None:
         return
-    each = largest if isinstance(largest, tuple) else (largest,)
-    written = ["null" if limit is None else format_SI(limit, FORCE) for limit in each]
+    limits_N = largest if isinstance(largest, tuple) else (largest,)
+    written = ["null" if limit is None else format_SI(limit, FORCE) for limit in limits_N]
     value = f"[{', '.join(written)}]" if isinstance(largest, tuple) else written[0]
     mark = "" if has_workspace else "# "
     yield f"  {mark}winches: {{tension_max: {value}}}"
@@ -239,17 +240,6 @@ def _workspace(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:
     yield "workspace:"
     yield f"  region: {region}"
     yield "  samples: 5000"
-
-
-def _effects(robot: ForeignRobot) -> Iterator[str]:
-    remarks = list(_remarks(robot, "effects"))
-    if robot.pulley_radius_m is not None:
-        remarks.append(
-            f"effects: {{pulley_radius: {{radius_m: {_number(robot.pulley_radius_m)}}}}}"
-        )
-    if remarks:
-        yield ""
-        yield from remarks
 
 
 def _remarks(robot: ForeignRobot, field: str, indent: str = "") -> Iterator[str]:

@@ -98,7 +98,7 @@ class Robot(checked.Shown):
         Least tension anywhere in any cable, where there are more cables than degrees of freedom:
         at its lower end, or at its lowest point where that hangs below both ends [N].
     sag_max : float
-        Largest sag over chord of any cable, see `designer.statics.shape.sag_m`: where there are
+        Largest sag over chord of any cable, see `designer.statics.inverse.sag_m`: where there are
         more cables than degrees of freedom, a pose that cannot keep it is not held.
     gravity_direction : array (3,)
         Where things fall, world frame; its length does not count.

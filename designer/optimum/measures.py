@@ -35,7 +35,7 @@ from designer.selection.select import at_samples
 from designer.selection.verify import verify_sizes
 from designer.sizing.newton import size_poses
 from designer.study import Objective, Selection, Study, as_built_by
-from designer.sweeps.point import value_at
+from designer.sweeps.plan import value_at
 from designer.units import FORCE, LENGTH, MASS, NUMBER, Dimension
 from designer.workspace.demand import demand_of, diameter_demand, rope_demand
 from designer.workspace.refine import Demand, Worst
@@ -281,30 +281,15 @@ def _nearest_to_holding(screen: Screen, strong: Sequence[Candidate]) -> NotHeldE
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """One value of a result.
+    """One value of a result."""
 
-    Parameters
-    ----------
-    name, title : str
-        As a file calls it, and as a reader does.
-    path : str
-        Where ``result.json`` has it.
-    dimension : Dimension
-        Its kind of quantity.
-    sign : int
-        1 where less is better, -1 where more is.
-    quick : callable or None
-        The quick way.
-    of_result : callable or None
-        From a result, where that takes more than the path.
-    """
-
-    name: str
-    title: str
-    path: str
-    dimension: Dimension
-    sign: int = 1
-    quick: Callable[[Quick], float] | None = None
+    name: str  #: as a file calls it
+    title: str  #: as a reader does
+    path: str  #: where ``result.json`` has it
+    dimension: Dimension  #: its kind of quantity
+    sign: int = 1  #: 1 where less is better, -1 where more is
+    quick: Callable[[Quick], float] | None = None  #: the quick way
+    #: from a result, where that takes more than the path
     of_result: Callable[[Mapping[str, Any]], float | None] | None = None
 
     def value(self, result: Mapping[str, Any]) -> float | None:
@@ -313,7 +298,7 @@ class Measure:
         Raises
         ------
         KeyError
-            If results never have it, see `designer.sweeps.point.value_at`.
+            If results never have it, see `designer.sweeps.plan.value_at`.
         """
         value: Any = (self.of_result or (lambda values: value_at(dict(values), self.path)))(result)
         return float(value) if isinstance(value, int | float) else None

@@ -16,8 +16,7 @@ from designer.model.cable import Cable
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations, Space
-from designer.proof.cover import covers_of
-from designer.proof.encloser import Encloser
+from designer.proof.encloser import Encloser, covers_of
 
 
 def compile_apart() -> subprocess.Popen[bytes]:

@@ -1,8 +1,9 @@
-"""What the enclosures of a box are made from: its middle as the product's solver has it.
+"""Boxes of poses, and what their enclosures are made from: the middle as the solver has it.
 
-In the middle of a box of poses the robot is solved; where internal forces are free, at the middles
-of its faces as well, to see how they follow the pose. What these answers are worth in all of the
-box is then for `enclosure.box` to prove.
+A space is covered by boxes of three coordinates of position, then three or none of rotation. In the
+middle of a box the robot is solved; where internal forces are free, at the middles of its faces as
+well, to see how they follow the pose. What these answers are worth in all of the box is then for
+`enclosure.box` to prove.
 """
 
 from __future__ import annotations
@@ -14,19 +15,182 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.kernel.calling import plain, share_out
 from designer.model.cable import Cable
+from designer.model.region import BoxFrame
 from designer.model.robot import Poses, Robot
 from designer.model.space import Space
-from designer.proof.cover import Cover
 from designer.statics.geometry import upright_exit_points_m, upright_poses
 from designer.statics.inverse import Statics, solve_sagging
 
+FIRST_RAISE, _MIN_RAISE, _MAX_RAISE = 0.25, 2.0**-14, 1.0
+"""Relative, of least tension and pull in the middle of a box, so that all of the box keeps them."""
+_MAX_FOLLOWED = 0.25
+"""Share of its pull by which that of a cable may change in half a box by choice."""
 _SHARE = 128
 """Boxes that one thread takes at a time."""
 _ULPS = 64.0 * 2.0**-53
-FIRST_RAISE, _LEAST_RAISE, _MOST_RAISE = 0.25, 2.0**-14, 1.0
-"""Relative, of least tension and pull in the middle of a box, so that all of the box keeps them."""
-_MOST_FOLLOWED = 0.25
-"""Share of its pull by which that of a cable may change in half a box by choice."""
+BoxEnds = tuple[FloatArray, FloatArray]
+"""Low and high corners, each (n, 3)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cover:
+    """The positions of a region by three coordinates, in one orientation or a range of them."""
+
+    frame: BoxFrame  #: what the coordinates of positions are
+    low: FloatArray  #: (n_boxes, 3 or 6) corners of boxes that cover it [m or share, rad]
+    high: FloatArray
+    turn_rad: FloatArray  #: (3,) orientation, where that is no coordinate [rad]
+
+    def places(self, coordinates: FloatArray) -> FloatArray:
+        """Return the places (n, 6) of coordinates (n, 3 or 6) [m, rad]."""
+        position = self.frame.origin_m + coordinates[:, :3] @ self.frame.axes.T
+        turn = coordinates[:, 3:]
+        if turn.shape[1] == 0:
+            turn = np.broadcast_to(self.turn_rad, position.shape)
+        return np.hstack([position, turn])
+
+    def cut(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Cut boxes at the border of the region.
+
+        Parameters
+        ----------
+        low, high : array (n, k)
+            Boxes.
+
+        Returns
+        -------
+        low, high : array (n, k)
+            The smallest boxes around what is left; low above high where that is nothing.
+        corners : array (n, n_corners, 2)
+            Corners of what is left, first two coordinates; some stand there more than once.
+        """
+        x, y = np.stack([low[:, :2], high[:, :2]], axis=-1).transpose(1, 0, 2)
+        plan = np.stack([x[:, [0, 1, 1, 0]], y[:, [0, 0, 1, 1]]], axis=-1)
+        for side in self.frame.sides:
+            plan = _cut_at(plan, side)
+        low, high = low.copy(), high.copy()
+        with np.errstate(invalid="ignore"):
+            low[:, :2] = np.fmin.reduce(plan, axis=1)
+            high[:, :2] = np.fmax.reduce(plan, axis=1)
+        gone = np.isnan(low[:, 0])
+        low[gone], high[gone] = 1.0, 0.0
+        return low, high, np.where(np.isnan(plan), np.nan_to_num(plan[:, :1]), plan)
+
+    def share(self, low: FloatArray, high: FloatArray, corners: FloatArray) -> FloatArray:
+        """Return the volumes of cut boxes (n,), flat directions left out."""
+        flat = (self.high == self.low).all(axis=0)
+        size = np.where(flat, 1.0, high - low)
+        if not flat[:2].any():
+            size[:, 1] = 1.0
+            x, y = corners[..., 0], corners[..., 1]
+            after_x, after_y = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
+            size[:, 0] = 0.5 * np.abs(np.sum(x * after_y - after_x * y, axis=1))
+        return np.asarray(np.prod(size, axis=1))
+
+
+def halves(low: FloatArray, high: FloatArray, cut: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return where the lower halves of boxes (n, k) end, and where the upper ones begin.
+
+    Each box is cut in two across a coordinate of its own, ``cut`` (n,).
+    """
+    rows = np.arange(len(low))
+    first, second = high.copy(), low.copy()
+    first[rows, cut] = second[rows, cut] = 0.5 * (low[rows, cut] + high[rows, cut])
+    return first, second
+
+
+def covers_of(space: Space) -> list[Cover]:
+    """Return what covers a space: one for each orientation of a position, one for a range."""
+    frame, ends = space.region.frame(), space.orientations.range_rad
+    assert frame is not None  # asked before, by `why_not`
+    made = []
+    if space.orientations.law is not None:  # of listed positions, each a box without size
+        turns = space.orientations.at(frame.low).swapaxes(0, 1)
+        boxes = [np.hstack([frame.low, turn]) for turn in turns]
+        return [Cover(frame, box, box, np.zeros(3)) for box in boxes]
+    for turn in space.orientations.turns_rad[: 1 if ends is not None else None]:
+        low, high = frame.low, frame.high
+        if ends is not None:
+            low = np.hstack([low, np.broadcast_to(ends[0], low.shape)])
+            high = np.hstack([high, np.broadcast_to(ends[1], high.shape)])
+        made.append(Cover(frame, low, high, turn))
+    return made
+
+
+def _cut_at(plan: FloatArray, side: FloatArray) -> FloatArray:
+    """Cut convex polygons (n, n_corners, 2), NaN where there is no corner, at a straight line."""
+    height = plan @ side[:2] + side[2]
+    order = np.argsort(np.isnan(height), axis=1, kind="stable")  # corners first, in their order
+    plan = np.take_along_axis(plan, order[..., None], axis=1)
+    height = np.take_along_axis(height, order, axis=1)
+    last = np.maximum((~np.isnan(height)).sum(axis=1) - 1, 0)
+    rows = np.arange(len(plan))
+    before, before_height = np.roll(plan, 1, axis=1), np.roll(height, 1, axis=1)
+    before[:, 0], before_height[:, 0] = plan[rows, last], height[rows, last]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        crosses = (height <= 0.0) != (before_height <= 0.0)
+        crosses &= ~np.isnan(height) & ~np.isnan(before_height)
+        share = before_height / (before_height - height)
+        crossing = before + share[..., None] * (plan - before)
+    out = np.full((len(plan), 2 * plan.shape[1], 2), np.nan)
+    out[:, 0::2] = np.where(crosses[..., None], crossing, np.nan)
+    with np.errstate(invalid="ignore"):
+        out[:, 1::2] = np.where((height <= 0.0)[..., None], plan, np.nan)
+    order = np.argsort(np.isnan(out[..., 0]), axis=1, kind="stable")
+    return np.take_along_axis(out, order[..., None], axis=1)[:, : plan.shape[1] + 1]
+
+
+def border_m(cover: Cover, boxes: BoxEnds, others: BoxEnds) -> FloatArray:
+    """Return the faces that boxes have in common with others, inside the region.
+
+    Parameters
+    ----------
+    cover : Cover
+        Whose coordinates they have.
+    ones, others : pair of array (n, 3)
+        Low and high corners of boxes that do not overlap.
+
+    Returns
+    -------
+    array (n_triangles, 3, 3)
+        Corners of triangles [m].
+    """
+    triangles = [np.empty((0, 3, 3))]
+    for axis in range(3):
+        low, high, plan = cover.cut(*_touching(boxes, others, axis))
+        overlaps = (low <= high).all(axis=1)
+        low, high, plan = low[overlaps], high[overlaps], plan[overlaps]
+        if axis == 2:
+            level = np.broadcast_to(low[:, None, 2:], (*plan.shape[:2], 1))
+            faces = np.concatenate([plan, level], axis=2)
+        else:
+            faces = np.stack([low, high, high, low], axis=1)
+            faces[:, 1, 2], faces[:, 3, 2] = low[:, 2], high[:, 2]
+        triangles += [faces[:, [0, k, k + 1]] for k in range(1, faces.shape[1] - 1)]
+    corners = np.concatenate(triangles)
+    edges = corners[:, 1:] - corners[:, :1]
+    corners = corners[np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1) > 0.0]
+    return cover.places(corners.reshape(-1, 3))[:, :3].reshape(-1, 3, 3)
+
+
+def _touching(boxes: BoxEnds, others: BoxEnds, axis: int) -> BoxEnds:
+    """Return the common faces across an axis, as boxes that are flat along it."""
+    across = [k for k in range(3) if k != axis]
+    faces = []
+    for side, facing in ((1, 0), (0, 1)):
+        at, planes = boxes[side][:, axis], others[facing][:, axis]
+        order = np.argsort(planes)
+        first, last = (np.searchsorted(planes[order], at, end) for end in ("left", "right"))
+        count = last - first
+        at_one = np.repeat(np.arange(len(at)), count)
+        nth = np.arange(len(at_one)) - np.repeat(np.cumsum(count) - count, count)
+        at_other = order[first[at_one] + nth]
+        low = np.maximum(boxes[0][at_one], others[0][at_other])
+        high = np.minimum(boxes[1][at_one], others[1][at_other])
+        low[:, axis] = high[:, axis] = at[at_one]
+        overlaps = (low < high)[:, across].all(axis=1)
+        faces.append((low[overlaps], high[overlaps]))
+    return np.concatenate([low for low, _ in faces]), np.concatenate([high for _, high in faces])
 
 
 def why_not(robot: Robot, space: Space) -> str:
@@ -65,7 +229,7 @@ class Encloser:
     """Bounds tensions in boxes of one cover."""
 
     def __init__(self, robot: Robot, cable: Cable, cover: Cover) -> None:
-        from designer.proof.enclosure.tables import Scene
+        from designer.proof.enclosure.box import Scene
 
         self.cover = cover
         self._robot, self._cable = robot, cable
@@ -103,12 +267,12 @@ class Encloser:
 
         Least tensions are ``raised`` (n,) in their middles, sags lowered.
         """
-        from designer.proof.enclosure.tables import BOUND, CUT, ESTIMATE, SPARE, TOLD
+        from designer.proof.enclosure.box import BOUND, CUT, ESTIMATE, SPARE, TOLD
 
         low, high, corners = self.cover.cut(low, high)
         middle = 0.5 * (low + high)
         half = 0.5 * (high - low) * (1.0 + 4.0 * _ULPS) + _ULPS * np.abs(middle)
-        steps = 2.0 ** np.ceil(np.log2(np.clip(raised, _LEAST_RAISE, _MOST_RAISE)))
+        steps = 2.0 ** np.ceil(np.log2(np.clip(raised, _MIN_RAISE, _MAX_RAISE)))
         pull, solved, follow = self._pulls(middle, half, steps)
         out = self._enclose(middle, half, corners, pull, follow, level)
         return BoxBounds(
@@ -138,8 +302,7 @@ class Encloser:
         level: float,
     ) -> FloatArray:
         """Return what the kernel tells of boxes, a row each."""
-        from designer.proof.enclosure.box import bound_range
-        from designer.proof.enclosure.tables import TOLD, Boxes
+        from designer.proof.enclosure.box import TOLD, Boxes, bound_range
 
         upright = upright_poses(self._robot, Poses.at(self.cover.places(middle)))
         rotation = upright.rotations
@@ -209,13 +372,15 @@ class Encloser:
         for d in np.flatnonzero(half.max(axis=0) > _ULPS * self._size):
             step = np.zeros_like(half)
             step[:, d] = half[:, d]
-            ahead, there = self._solve(middle + step, raised)
-            behind, too = self._solve(middle - step, raised)
+            ahead, ahead_solved = self._solve(middle + step, raised)
+            behind, behind_solved = self._solve(middle - step, raised)
             # The smaller difference: where another branch begins on one side, that of the middle.
             before, after = pull - behind, ahead - pull
             change = np.where(np.abs(before) < np.abs(after), before, after)
-            change = np.where((there & too)[:, None] & (before * after > 0.0), change, 0.0)
-            largest_change = _MOST_FOLLOWED * pull
+            change = np.where(
+                (ahead_solved & behind_solved)[:, None] & (before * after > 0.0), change, 0.0
+            )
+            largest_change = _MAX_FOLLOWED * pull
             follow[..., d] = np.clip(change, -largest_change, largest_change) / half[:, d, None]
         return pull, solved, follow
 
@@ -255,9 +420,9 @@ def _pulls_of(statics: Statics, cable: Cable) -> FloatArray:
     return np.where(1e-3 * np.abs(D) > X, upright, level)
 
 
-def _turning_axes(turn: FloatArray) -> FloatArray:
+def _turning_axes(rotation_vector: FloatArray) -> FloatArray:
     """Return J (n, 3, 3): the turn by rotation vector + d is that by J d after the former."""
-    angle2 = np.einsum("ni,ni->n", turn, turn)[:, None, None]
+    angle2 = np.einsum("ni,ni->n", rotation_vector, rotation_vector)[:, None, None]
     angle = np.sqrt(angle2)
     small = angle < 1e-2
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -265,5 +430,5 @@ def _turning_axes(turn: FloatArray) -> FloatArray:
         series = 1.0 / 6.0 - angle2 / 120.0 + angle2**2 / 5040.0
         rest = np.where(small, series, (angle - np.sin(angle)) / (angle2 * angle))
     sine = 2.0 * half**2
-    cross = -np.cross(np.eye(3)[None], turn[:, None]).transpose(0, 2, 1)
+    cross = -np.cross(np.eye(3)[None], rotation_vector[:, None]).transpose(0, 2, 1)
     return np.asarray(np.eye(3) + sine * cross + rest * (cross @ cross))

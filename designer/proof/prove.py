@@ -18,8 +18,15 @@ from designer.arrays import FloatArray, IntArray
 from designer.model.cable import Cable
 from designer.model.robot import Robot
 from designer.model.space import Space
-from designer.proof.cover import Cover, covers_of, halves
-from designer.proof.encloser import FIRST_RAISE, BoxBounds, Encloser, why_not
+from designer.proof.encloser import (
+    FIRST_RAISE,
+    BoxBounds,
+    Cover,
+    Encloser,
+    covers_of,
+    halves,
+    why_not,
+)
 
 Status = Literal["proved", "partial", "refuted", "off"]
 
@@ -63,35 +70,24 @@ class Clock:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Proof:
-    """What is proved of the largest utilisation.
+    """What is proved of the largest utilisation."""
 
-    Parameters
-    ----------
-    status : str
-        ``proved``: in each pose there is an equilibrium with no tension above the bound, and the
-        cable holds; ``partial``: for a share of the poses; ``refuted``: a pose was found that the
-        cable does not hold; ``off``: nothing was tried.
-    bound, found : float
-        Largest over allowable tension: proved, infinite where it is not for all poses; and found.
-    worst : array (6,) or None
-        The pose of the latter, where it is worse than what had been found before [m, rad].
-    fraction : float
-        Share of the poses, by volume, for which it is proved that the cable holds.
-    boxes : int
-        How many were tried.
-    reason : str
-        Why nothing was tried, or what ended it before all was decided.
-    load_case : str
-        In which load case, with its direction; empty where the study has none.
-    """
-
+    #: ``proved``: in each pose there is an equilibrium with no tension above the bound, and the
+    #: cable holds; ``partial``: for a share of the poses; ``refuted``: a pose was found that the
+    #: cable does not hold; ``off``: nothing was tried
     status: Status
+    #: largest over allowable tension that is proved; infinite where it is not for all poses
     bound: float = field(default=np.inf, metadata={"json": "utilisation_bound"})
+    #: the largest that was found
     found: float = field(default=np.nan, metadata={"json": "utilisation_found"})
+    #: (6,) the pose of the latter, where it is worse than what had been found before [m, rad]
     worst: FloatArray | None = field(default=None, metadata={"json": None})
+    #: share of the poses, by volume, for which it is proved that the cable holds
     fraction: float = field(default=0.0, metadata={"json": "fraction_proved"})
-    boxes: int = 0
+    boxes: int = 0  #: how many were tried
+    #: why nothing was tried, or what ended it before all was decided
     reason: str = field(default="", metadata={"json": lambda reason: {"reason": reason or None}})
+    #: in which load case, with its direction; empty where the study has none
     load_case: str = field(
         default="", metadata={"json": lambda load_case: {"load_case": load_case or None}}
     )
@@ -204,10 +200,14 @@ class _BranchAndBound:
         self._keep(np.delete(np.arange(len(self._bound)), at))
         bound, cut = np.empty(len(at)), np.empty(len(at), dtype=np.int64)
         for k in np.unique(cover):
-            some = np.flatnonzero(cover == k)
-            bounds = self._enclosers[k].bound(low[some], high[some], raised[some], self._level)
-            bound[some], cut[some] = bounds.bound, bounds.cut
-            raised[some] = np.where(np.isnan(bounds.needs), raised[some], _SHRINKS * bounds.needs)
+            members = np.flatnonzero(cover == k)
+            bounds = self._enclosers[k].bound(
+                low[members], high[members], raised[members], self._level
+            )
+            bound[members], cut[members] = bounds.bound, bounds.cut
+            raised[members] = np.where(
+                np.isnan(bounds.needs), raised[members], _SHRINKS * bounds.needs
+            )
             self._try(self._enclosers[k], bounds)
         self.boxes += len(at)
         good = bound <= self._level
@@ -223,8 +223,8 @@ class _BranchAndBound:
         first, second = halves(low, high, cut)
         for a, b in ((low, first), (second, high)):
             for k in np.unique(cover):
-                some = np.flatnonzero(cover == k)
-                self._add(int(k), a[some], b[some], bound[some], raised[some])
+                members = np.flatnonzero(cover == k)
+                self._add(int(k), a[members], b[members], bound[members], raised[members])
 
     def _next(self, number: int) -> IntArray:
         """Return the boxes that are not known to hold, the largest first; else the worst."""
@@ -246,14 +246,14 @@ class _BranchAndBound:
             bounds.bound > self._level
         )  # nothing is known of corners
         unknown = np.argsort(np.where(bad, -bounds.bound, np.inf))[: min(_TRIES, int(bad.sum()))]
-        tried = [
+        trials = [
             bounds.worst[order],
             bounds.middle[unknown],
             bounds.middle[~bounds.solved][:_TRIES],
         ]
-        if not sum(map(len, tried)):
+        if not sum(map(len, trials)):
             return
-        places = encloser.cover.places(np.concatenate(tried))
+        places = encloser.cover.places(np.concatenate(trials))
         used = encloser.utilisation(places)
         if used.max() > self._found * _BETTER:
             self._found, self._worst = float(used.max()), places[used.argmax()]

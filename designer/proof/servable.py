@@ -29,9 +29,7 @@ from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.robot import Poses, Robot
 from designer.model.space import Space
-from designer.proof.border import Boxes, border_m
-from designer.proof.cover import Cover, covers_of, halves
-from designer.proof.encloser import Encloser, why_not
+from designer.proof.encloser import BoxEnds, Cover, Encloser, border_m, covers_of, halves, why_not
 from designer.proof.prove import Budget
 from designer.statics.geometry import upright_exit_points_m, upright_poses
 
@@ -54,24 +52,13 @@ _TWO_SIDES = np.array(list(product((0, 1), repeat=3)))
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Servable:
-    """Shares of a space, by volume.
+    """Shares of a space, by volume."""
 
-    Parameters
-    ----------
-    impossible : float
-        Proved that no rope holds the platform there.
-    possible : float
-        Proved that some rope does, if it is light and strong enough.
-    boxes : int
-        How many were tried.
-    border_m : array (n, 3, 3)
-        Triangles in which that part ends, inside the region, of a prism in one orientation; else
-        none [m].
-    """
-
-    impossible: float
-    possible: float
-    boxes: int
+    impossible: float  #: proved that no rope holds the platform there
+    possible: float  #: proved that some rope does, if it is light and strong enough
+    boxes: int  #: how many were tried
+    #: (n, 3, 3) triangles in which that part ends, inside the region, of a prism in one
+    #: orientation; else none [m]
     border_m: FloatArray = field(metadata={"json": None})
 
 
@@ -88,12 +75,12 @@ def servable(robot: Robot, space: Space, budget: Budget) -> Servable | None:
     rope = Cable(np.nan, density, np.inf, _STRONG * load_N).with_attached(robot.attached)
     covers = [_Part(robot, rope, cover) for cover in covers_of(space)]
     covers[0].compile()  # which is not counted
-    boxes, most, clock = 0, min(MOST_BOXES, budget.boxes), budget.start()
-    while boxes < most and not clock.is_over:
+    boxes, max_boxes, clock = 0, min(MOST_BOXES, budget.boxes), budget.start()
+    while boxes < max_boxes and not clock.is_over:
         part = max(covers, key=lambda cover: cover.largest)
         if part.largest == 0.0:
             break
-        boxes += part.step(min(_BATCH, most - boxes))
+        boxes += part.step(min(_BATCH, max_boxes - boxes))
         if boxes >= _ENOUGH_TO_SEE and not any(part.no or part.yes for part in covers):
             break
     total = sum(part.whole for part in covers)
@@ -114,8 +101,8 @@ class _Part:
         self.whole = float(self._volume.sum())
         self.no = self.yes = 0.0
         self._wrenches: list[FloatArray] = []
-        self._no: list[Boxes] = []
-        self._yes: list[Boxes] = []
+        self._no: list[BoxEnds] = []
+        self._yes: list[BoxEnds] = []
 
     @property
     def largest(self) -> float:
@@ -242,6 +229,6 @@ def _drops(sag_max: float) -> FloatArray:
     return np.asarray((1.0 + _BETWEEN) * (_SLOPES - 2.0 * theta * lift) / chord)
 
 
-def _joined(boxes: list[Boxes]) -> Boxes:
+def _joined(boxes: list[BoxEnds]) -> BoxEnds:
     low, high = zip(*boxes, strict=True)
     return np.concatenate(low), np.concatenate(high)

@@ -7,40 +7,23 @@ from dataclasses import dataclass
 
 from designer import __version__
 from designer.model.verdict import Verdict
-from designer.reference import machines, robots, single_cables
-from designer.reference.case import Figure, ReferenceCase
+from designer.reference.cases import CASES, Figure, ReferenceCase
 
 CASPR, WIREX = "CASPR", "WireX"
 
 
 @dataclass(frozen=True, slots=True)
 class Converted:
-    """One robot.
+    """A robot of another program's file, sized in one pose."""
 
-    Parameters
-    ----------
-    name, source : str
-        The model, with its set of cables if not the default, and the program it is of.
-    n_cables : int
-        Cables.
-    gaps : tuple of str
-        What the file leaves out.
-    verdict : Verdict or None
-        Of the pose; None where the robot is not sized.
-    diameter_mm, tension_N : float or None
-        Thinnest cable of the pose, and its largest tension.
-    reason : str
-        Why it is not sized.
-    """
-
-    name: str
-    source: str
+    name: str  #: the model, with its set of cables if not the default
+    source: str  #: the program it is of
     n_cables: int
-    gaps: tuple[str, ...] = ()
-    verdict: Verdict | None = None
-    diameter_mm: float | None = None
-    tension_N: float | None = None
-    reason: str = ""
+    gaps: tuple[str, ...] = ()  #: what the file leaves out
+    verdict: Verdict | None = None  #: of the pose; None where the robot is not sized
+    diameter_mm: float | None = None  #: thinnest cable of the pose
+    tension_N: float | None = None  #: largest of that cable
+    reason: str = ""  #: why it is not sized
 
 
 _SOLVED, _OUTSIDE = Verdict.SOLVED, Verdict.OUTSIDE_HULL
@@ -83,7 +66,6 @@ ROBOTS = (
 )  # fmt: skip
 
 
-CASES: tuple[ReferenceCase, ...] = (*robots.CASES, *single_cables.CASES, *machines.CASES)
 HEADINGS = ("unit", "theirs", "ours", "difference", "allowed", "")
 Computed = Sequence[tuple[ReferenceCase, Sequence[Figure]]]
 

@@ -13,7 +13,7 @@ from designer.documents.document import document_of
 from designer.documents.plain import json_text
 from designer.io.config.moved import moved_to
 from designer.io.output import write_whole
-from designer.optimum.result import Optimum
+from designer.optimum.optimise import Optimum
 from designer.progress import SILENT, Reporter
 from designer.report import format as fmt
 from designer.report.comparison import write_comparison

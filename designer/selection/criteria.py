@@ -15,18 +15,16 @@ from designer.model.cable import Cable, Cables
 from designer.model.load_case import Loaded
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
-from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.inverse import Statics, sag_ratio, solve_sagging
 from designer.statics.modes import NEAR, TAKES_PART, frequencies_Hz
-from designer.statics.shape import sag_ratio
 from designer.statics.stiffness import (
     largest_displacement_m_per_N,
     least_eigenvalue_N_per_m,
     upright_stiffness,
 )
 from designer.study import Selection
-from designer.workspace.clearance import names_of, smallest_clearance
-from designer.workspace.interference import where_pairs_are_near
-from designer.workspace.straight import where_each_pulls_most
+from designer.workspace.clearance import names_of, smallest_clearance, where_pairs_are_near
+from designer.workspace.demand import where_each_pulls_most
 
 ROUNDING = 1e-9
 """Relative: how exactly the solver keeps a limit that it chooses the internal forces by."""

@@ -16,10 +16,9 @@ from designer.model.workspace import Workspace
 from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate
 from designer.selection.family_need import CaseNeed
-from designer.workspace.hanging import HangingCables, survey_hanging
-from designer.workspace.interference import Interference, survey
-from designer.workspace.result import WorkspaceMap
+from designer.workspace.clearance import Interference, survey
 from designer.workspace.stiffness import StiffnessSurvey, survey_stiffness
+from designer.workspace.sweep import HangingCables, WorkspaceMap, survey_hanging
 
 
 @dataclass(frozen=True, slots=True)

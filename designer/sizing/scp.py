@@ -27,8 +27,8 @@ from designer.model.cable import Material
 from designer.model.robot import Poses, Robot
 from designer.physics import catenary
 from designer.resources import missing_library
-from designer.statics.distribution import distribute_evenly
 from designer.statics.geometry import CableGeometry, cable_geometry, load_wrench_N, structure_matrix
+from designer.statics.inverse import distribute_evenly
 
 _START_PULL = 0.7
 _TRUST = 0.5

@@ -48,30 +48,16 @@ class Fate(IntEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CableLoss:
-    """The state after the loss of a cable, or a change of temperature.
+    """The state after the loss of a cable, or a change of temperature."""
 
-    Parameters
-    ----------
-    fate : array (n_poses,) of int
-        One `Fate` a pose.
-    before : Statics
-        With all cables (n_poses,); the others keep the lengths that they have there.
-    tension_N : array (n_poses, n_cables)
-        Largest tension anywhere in each cable at rest, 0 in the lost one; NaN where there is no
-        rest [N].
-    rest : Poses
-        Where the platform is then (n_poses,); NaN where nowhere.
-    moved_m : array (n_poses,)
-        How far the origin of its frame has moved [m].
-    statics : Statics
-        Of the cables that are left, at rest, in the poses that were held with all cables.
-    """
-
-    fate: IntArray
-    before: Statics
+    fate: IntArray  #: (n_poses,) one `Fate` a pose
+    before: Statics  #: with all cables (n_poses,); the others keep the lengths that they have there
+    #: (n_poses, n_cables) largest tension anywhere in each cable at rest, 0 in the lost one; NaN
+    #: where there is no rest [N]
     tension_N: FloatArray
-    rest: Poses
-    moved_m: FloatArray
+    rest: Poses  #: where the platform is then (n_poses,); NaN where nowhere
+    moved_m: FloatArray  #: (n_poses,) how far the origin of its frame has moved [m]
+    #: of the cables that are left, at rest, in the poses that were held with all cables
     statics: Statics
 
     @property
@@ -102,14 +88,14 @@ def settle(
     tension = np.full((count, robot.n_cables), np.nan)
     position = np.full((count, 3), np.nan)
     rotation = np.array(poses.rotations)
-    every = np.arange(robot.n_cables)
-    remaining = every if lost is None else np.delete(every, lost - 1)
+    cables = np.arange(robot.n_cables)
+    remaining = cables if lost is None else np.delete(cables, lost - 1)
     start = Poses(poses.position_m[at], rotation[at])
-    reduced, left = robot, cable
+    reduced_robot, reduced_cable = robot, cable
     if lost is not None:
-        reduced, left = robot.without_cable(lost), cable.without(lost)
+        reduced_robot, reduced_cable = robot.without_cable(lost), cable.without(lost)
     length = (1.0 + growth) * before.length_m[at][:, remaining]
-    forward_statics = solve_forward(reduced, left, length, start)
+    forward_statics = solve_forward(reduced_robot, reduced_cable, length, start)
     rests, at = forward_statics.is_stable, at[forward_statics.is_stable]
     tension[at] = 0.0
     tension[np.ix_(at, remaining)] = forward_statics.statics.cable_tension_N[rests]

@@ -14,21 +14,14 @@ from designer.model.robot import Poses, Robot
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CableGeometry:
-    """Chords of all cables in all poses.
+    """Chords of all cables in all poses."""
 
-    Parameters
-    ----------
-    horizontal_distance_m, drop_m : array (..., n_cables)
-        Horizontal distance and drop from exit point to attachment point [m].
-    outward : array (..., n_cables, 2)
-        Unit vector from exit point toward attachment point in plan; zero for a vertical cable.
-    lever_m : array (..., n_cables, 3)
-        From the body frame's origin to the attachment point, world axes [m].
-    """
-
-    horizontal_distance_m: FloatArray
-    drop_m: FloatArray
+    horizontal_distance_m: FloatArray  #: (..., n_cables) from exit point to attachment point [m]
+    drop_m: FloatArray  #: (..., n_cables) the same [m]
+    #: (..., n_cables, 2) unit vector from exit point toward attachment point in plan; zero for a
+    #: vertical cable
     outward: FloatArray
+    #: (..., n_cables, 3) from the body frame's origin to the attachment point, world axes [m]
     lever_m: FloatArray
 
     @property
@@ -41,8 +34,8 @@ def upright_poses(robot: Robot, poses: Poses) -> Poses:
     """Return the poses in the upright frame, whose z axis is the true vertical."""
     if robot.is_upright:
         return poses
-    turn = robot.upright
-    return Poses(np.asarray(poses.position_m @ turn.T), np.asarray(turn @ poses.rotation))
+    rotation = robot.upright
+    return Poses(np.asarray(poses.position_m @ rotation.T), np.asarray(rotation @ poses.rotation))
 
 
 def centre_of_mass_arm_m(robot: Robot, poses: Poses) -> FloatArray:
@@ -87,8 +80,8 @@ def _inertia_wrench_N(robot: Robot, poses: Poses) -> FloatArray | None:
     wrench = robot.inertia_wrench_N(poses)
     if wrench is None or robot.is_upright:
         return wrench
-    turned = wrench.reshape(*poses.shape, 2, 3) @ robot.upright.T
-    return np.asarray(turned.reshape(wrench.shape))
+    rotated = wrench.reshape(*poses.shape, 2, 3) @ robot.upright.T
+    return np.asarray(rotated.reshape(wrench.shape))
 
 
 def one_cable(robot: Robot, cable: Cable | Cables, least_tension_N: float = 0.0) -> CableFigures:

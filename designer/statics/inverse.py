@@ -1,4 +1,25 @@
-"""From pose to lengths and tensions: the inverse statics of a robot with given cables."""
+r"""From pose to lengths and tensions: the inverse statics of a robot with given cables.
+
+Where there are more cables than degrees of freedom, straight ones share the load as follows. With
+unit vectors :math:`u_i` along the cables, levers :math:`r_i` and the load wrench w, tensions t hold
+a pose if
+
+.. math::  A\,t = w, \quad A_i = (u_i,\; r_i \times u_i), \qquad t_{min} \le t_i.
+
+What is left to choose is settled by a linear programme. Each answer carries its own proof: the
+residual of the optimality conditions with the solver's multipliers. After Gouttefarde, Daney and
+Merlet, IEEE Transactions on Robotics 27(1), 2011, for the set of wrenches, and Pott, Cable-Driven
+Parallel Robots (2018), section 3.7, for the objective.
+
+The supports of the exit points, masts, frames and pulleys, are pulled with the tension that a cable
+has there, along its own tangent toward the platform:
+
+.. math::  R = F - q\,l
+
+with F the pull of the platform on the cable, q its load per unstrained length l of what hangs free.
+Where a sheave redirects it, the branch that goes on to the winch pulls with the same tension along
+its own direction; friction and the weight of that branch are left out.
+"""
 
 from __future__ import annotations
 
@@ -13,14 +34,15 @@ from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict, hanging_cables
 from designer.physics import catenary
-from designer.statics.distribution import distribute_evenly
 from designer.statics.geometry import (
     CableGeometry,
     cable_geometry,
     density_matrix,
     load_wrench_N,
+    plane_vector,
     structure_matrix,
     upright_poses,
+    upright_situation,
 )
 from designer.statics.pulleys import PulleyRun, straight_run
 from designer.statics.task import Task, situation_at, solve_task
@@ -28,51 +50,95 @@ from designer.statics.task import Task, situation_at, solve_task
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution
 
-
+_PROVEN = 1e-6
+"""Residual of the optimality conditions up to which they count as met."""
 _MARGINAL = 0.2
 """Part of a wrench of unit length that its words leave out."""
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+
+
+def distribute_evenly(robot: Robot, poses: Poses) -> FloatArray:
+    """Return the tensions with the smallest largest one (..., n_cables), in poses (...) [N].
+
+    None is below `Robot.tension_min_N`. NaN where no tensions hold the pose, or are not proved to
+    be the best.
+    """
+    tension_N, _ = _tensions_and_bounds(robot, poses.flat)
+    return tension_N.reshape(*poses.shape, robot.n_cables)
+
+
+def tension_over_least(robot: Robot, poses: Poses) -> FloatArray:
+    """Return how far each cable is above its least tension (n_poses, n_cables) [N], or from it.
+
+    By the tensions of `distribute_evenly`. Where a cable has just its least, minus the newtons that
+    the largest tension would grow by with each newton more in it; so this rises towards where a
+    cable begins to carry. NaN where no tensions hold the pose.
+    """
+    tension_N, bound = _tensions_and_bounds(robot, poses)
+    over_N = tension_N - robot.tension_min_N
+    return np.where(over_N <= _PROVEN * tension_N.max(axis=1, keepdims=True), bound, over_N)
+
+
+def _tensions_and_bounds(robot: Robot, flat: Poses) -> tuple[FloatArray, FloatArray]:
+    """Return the tensions [N] and the multipliers of their bounds (n_poses, n_cables).
+
+    Those of t ≤ largest are positive and sum to one, those of t ≥ low negative.
+    """
+    from designer.kernel.batch import solve_massless_batch
+
+    exit_points_m = straight_run(robot, flat).exit_points_m
+    situation = upright_situation(robot, flat, exit_points_m)
+    tension_N, dual, _ = solve_massless_batch(robot, situation)
+    geometry = cable_geometry(robot, flat, exit_points_m)
+    with np.errstate(invalid="ignore"):  # a cable of no length has no direction
+        matrix = density_matrix(robot, geometry) / geometry.chord_m[..., None, :]
+    # With multipliers y of the balance, those of the bounds are the parts of -Aᵀy.
+    bound = -np.einsum("pi,pij->pj", dual, matrix)
+    total = np.maximum(bound, 0.0).sum(axis=1, keepdims=True)
+    bound = bound / np.where(total > 0.0, total, np.nan)
+    proven = _residual(robot, matrix, load_wrench_N(robot, flat), tension_N, bound) < _PROVEN
+    return np.where(proven[:, None], tension_N, np.nan), bound
+
+
+def _residual(
+    robot: Robot, matrix: FloatArray, load: FloatArray, tension_N: FloatArray, bound: FloatArray
+) -> FloatArray:
+    """Return the residual of optimality (n_poses,), forces over the largest load.
+
+    The multiplier of each bound has to vanish off it. Moments are taken over the reach of the
+    attachments.
+    """
+    room = tension_N.max(axis=1, keepdims=True) - tension_N
+    height = tension_N - robot.tension_min_N
+    slackness = np.where(bound > 0.0, bound * room, -bound * height)
+    reach = float(np.abs(robot.attachments_m).sum(axis=1).max()) or 1.0
+    lever = np.where(robot.balance_rows < 3, 1.0, reach)
+    imbalance = (np.einsum("pij,pj->pi", matrix, tension_N) - load) / lever
+    parts = np.hstack([np.abs(imbalance), -height, np.abs(slackness)])
+    return np.asarray(parts.max(axis=1) / (np.abs(load / lever).max(initial=0.0) or 1.0))
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Statics(checked.Shown):
-    """Static equilibrium of poses with sagging cables; NaN wherever the verdict is not solved.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    poses : Poses
-        The poses (...).
-    verdict : array (...) of int
-        One `Verdict` a pose.
-    weight_N_per_m, axial_stiffness_N : array (..., 1 or n_cables)
-        Weight per unstrained length [N/m] and EA [N] of the cables in each pose; one for all
-        cables, or each its own.
-    length_m : array (..., n_cables)
-        Unstrained lengths from the exit points, around pulleys where there are any [m].
-    force_x_N, force_z_N : array (..., n_cables)
-        Force on each cable at the platform: horizontal, away from the exit point, and vertical,
-        upward [N]. Riehl et al., ICRA 2010, section II.B.
-    run : PulleyRun
-        Where the cables leave their pulleys, and how much lies on them.
-    force_N : array (..., 3) or None
-        Force on the platform beside its weight, base frame [N].
-    wrench : array (..., degrees of freedom) or None
-        Of a pose that one wrench proves to be impossible, that wrench, upright frame, of unit
-        length, moments over the reach of the attachments: what is needed has a part along it, what
-        the cables can do has none. NaN elsewhere.
-    """
+    """Static equilibrium of poses with sagging cables; NaN wherever the verdict is not solved."""
 
     robot: Robot
-    poses: Poses
-    verdict: VerdictArray
-    weight_N_per_m: FloatArray
-    axial_stiffness_N: FloatArray
+    poses: Poses  #: (...)
+    verdict: VerdictArray  #: one `Verdict` a pose
+    weight_N_per_m: FloatArray  #: (..., 1 or n_cables) per unstrained length [N/m]
+    axial_stiffness_N: FloatArray  #: (..., 1 or n_cables) EA [N]
+    #: (..., n_cables) unstrained, from the exit points, around pulleys where there are any [m]
     length_m: FloatArray
+    #: (..., n_cables) force on each cable at the platform, away from the exit point [N]; Riehl et
+    #: al., ICRA 2010, section II.B
     force_x_N: FloatArray
-    force_z_N: FloatArray
-    run: PulleyRun
+    force_z_N: FloatArray  #: (..., n_cables) the same, upward [N]
+    run: PulleyRun  #: where the cables leave their pulleys, and how much lies on them
+    #: (..., 3) force on the platform beside its weight, base frame [N]
     force_N: FloatArray | None = None
+    #: of a pose that one wrench proves to be impossible, that wrench, upright frame, of unit
+    #: length, moments over the reach of the attachments: what is needed has a part along it, what
+    #: the cables can do has none; NaN elsewhere
     wrench: FloatArray | None = None
 
     def part(self, rows: int | IntArray) -> Statics:
@@ -106,12 +172,12 @@ class Statics(checked.Shown):
         wrench = np.zeros(6)
         wrench[self.robot.balance_rows] = self.wrench
         parts = np.round(wrench.reshape(2, 3) @ self.robot.upright, 2) + 0.0
-        what = [
+        motions = [
             f"{verb} ({', '.join(f'{x:g}' for x in part)})"
             for verb, part in zip(("push along", "turn it about"), parts, strict=True)
             if np.linalg.norm(part) > _MARGINAL
         ]
-        return f"{verdict.sentence} The cables would have to {' and '.join(what)}."
+        return f"{verdict.sentence} The cables would have to {' and '.join(motions)}."
 
     @property
     def free_length_m(self) -> FloatArray:
@@ -222,8 +288,8 @@ class Statics(checked.Shown):
         matrix = structure_matrix(self.robot, self.geometry())
         forces = np.stack([self.force_x_N, self.force_z_N], axis=-1)
         flat = forces.reshape(*self.verdict.shape, matrix.shape[-1])
-        held = np.einsum("...ij,...j->...i", matrix, flat)
-        return np.asarray(held - load_wrench_N(self.robot, self.poses, self.force_N))
+        wrench = np.einsum("...ij,...j->...i", matrix, flat)
+        return np.asarray(wrench - load_wrench_N(self.robot, self.poses, self.force_N))
 
     def geometry(self) -> CableGeometry:
         """Return the chords of the cables, upright frame."""
@@ -236,16 +302,10 @@ class Statics(checked.Shown):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MasslessStatics:
-    """Static equilibrium with straight, weightless cables.
+    """Static equilibrium with straight, weightless cables."""
 
-    Parameters
-    ----------
-    length_m, tension_N : array (..., n_cables)
-        Lengths [m] and tensions [N]; a negative tension means that the cable would have to push.
-    """
-
-    length_m: FloatArray
-    tension_N: FloatArray
+    length_m: FloatArray  #: (..., n_cables)
+    tension_N: FloatArray  #: (..., n_cables); below zero where the cable would have to push
 
     @property
     def largest_tension_N(self) -> FloatArray:
@@ -388,3 +448,73 @@ def statics_with(
         run=run,
         force_N=force_N,
     )
+
+
+def exit_angle_rad(statics: Statics) -> FloatArray:
+    """Return how far below the horizontal each cable leaves its exit point (..., n_cables) [rad].
+
+    With V_0 = F_z - w l, the vertical pull at the exit point, tan α = -V_0 / F_x.
+    """
+    length, force_x, force_z, _, weight = statics.catenaries
+    return np.asarray(np.arctan2(weight * length - force_z, force_x))
+
+
+def sag_m(statics: Statics) -> FloatArray:
+    """Return how far each cable strays from its chord (..., n_cables) [m]; see `physics.catenary`.
+
+    Below the lower end is along the load on the cables, of weight and wind.
+    """
+    chord = statics.geometry()
+    return catenary.sag_m(*statics.catenaries, chord.horizontal_distance_m, chord.drop_m)
+
+
+def sag_ratio(statics: Statics) -> FloatArray:
+    """Return the sag of each cable over its chord (..., n_cables), which `Robot.sag_max` limits."""
+    return sag_m(statics) / statics.geometry().chord_m
+
+
+def stretch_m(statics: Statics) -> FloatArray:
+    """Return how much longer each cable is under its load (..., n_cables) [m].
+
+    The integral of T / EA over the unstrained length between pulley and platform, with
+    T = √(F_x² + V(s)²), by Gauss's rule with 16 points.
+    """
+    length, force_x, force_z, stiffness, weight = (v[..., None] for v in statics.catenaries)
+    s = 0.5 * (1.0 + _POINTS) * length
+    tension = np.hypot(force_x, force_z + weight * (s - length))
+    return np.asarray((tension * _WEIGHTS).sum(axis=-1) * (0.5 * length / stiffness)[..., 0])
+
+
+def platform_branch_N(statics: Statics) -> FloatArray:
+    """Return the pull of the cables' runs to the platform on their supports (..., n_cables, 3) [N].
+
+    World frame.
+    """
+    force_z = statics.force_z_N - statics.weight_N_per_m * statics.free_length_m
+    pull = plane_vector(statics.force_x_N, force_z, statics.geometry().outward)
+    return np.asarray(pull @ statics.robot.upright)
+
+
+def winch_branch_N(statics: Statics) -> FloatArray | None:
+    """Return the pull of the branches toward the winches (..., n_cables, 3), world frame [N].
+
+    Straight down where there are pulleys, which a cable enters from below; else toward
+    `Winches.positions_m`; None where nothing tells.
+    """
+    robot = statics.robot
+    positions = robot.winches.positions_m
+    if robot.pulley_radius_m != 0.0:
+        direction = -robot.level[2]
+    elif positions is not None:
+        along = positions - robot.exit_points_m
+        direction = along / np.linalg.norm(along, axis=1, keepdims=True)
+    else:
+        return None
+    return np.asarray(statics.exit_tension_N[..., None] * direction)
+
+
+def reaction_N(statics: Statics) -> FloatArray:
+    """Return what the cables do to their supports by all known branches (..., n_cables, 3) [N]."""
+    winch_branch = winch_branch_N(statics)
+    pull = platform_branch_N(statics)
+    return pull if winch_branch is None else pull + winch_branch

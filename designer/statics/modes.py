@@ -1,7 +1,7 @@
 r"""How platform and cables oscillate together about an equilibrium, with winches braked.
 
-Each cable is a chain of catenaries (`designer.physics.chain`) that is eliminated up to its end, so
-that at the square :math:`λ = (2 π f)^2` of a frequency the platform resists with
+Each cable is a chain of catenaries (`designer.physics.tangent`) that is eliminated up to its end,
+so that at the square :math:`λ = (2 π f)^2` of a frequency the platform resists with
 
 .. math::
 
@@ -27,7 +27,7 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.robot import Platform, Robot
-from designer.physics.chain import Chain, chain_of
+from designer.physics.tangent import Chain, chain_of
 from designer.statics.geometry import centre_of_mass_arm_m, cross_matrix, upright_poses
 from designer.statics.inverse import Statics
 from designer.statics.stiffness import per_reach, scaled, upright_stiffness
@@ -46,22 +46,13 @@ _RANGE, _HALVINGS, _STEP = 1e6, 26, 1e-5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mode:
-    """One way in which platform and cables oscillate.
+    """One way in which platform and cables oscillate."""
 
-    Parameters
-    ----------
-    frequency_Hz : float
-        Its natural frequency; 0 where the platform would not stay [Hz].
-    shape : array (3,) or (6,)
-        Displacement of the origin of the body frame, and turn, along the axes of the base frame
-        [m, rad]; the attachment that moves farthest moves by 1 m.
-    cable_share : float
-        Share of the cables in the kinetic energy.
-    """
-
-    frequency_Hz: float
+    frequency_Hz: float  #: its natural frequency; 0 where the platform would not stay [Hz]
+    #: (3,) or (6,) displacement of the origin of the body frame, and turn, along the axes of the
+    #: base frame [m, rad]; the attachment that moves farthest moves by 1 m
     shape: FloatArray
-    cable_share: float
+    cable_share: float  #: share of the cables in the kinetic energy
 
 
 def knows_inertia(robot: Robot, body: Platform) -> bool:
@@ -75,12 +66,12 @@ def platform_mass_matrix(statics: Statics, body: Platform) -> FloatArray:
     Upright frame, about the origin of the body frame.
     """
     robot = statics.robot
-    turn = upright_poses(robot, statics.poses).rotations
+    rotation = upright_poses(robot, statics.poses).rotations
     inertia = np.zeros((3, 3)) if body.inertia_kg_m2 is None else body.inertia_kg_m2
     C = cross_matrix(centre_of_mass_arm_m(robot, statics.poses))
-    C = np.broadcast_to(C, turn.shape)
-    J = turn @ inertia @ np.swapaxes(turn, -1, -2) - body.mass_kg * C @ C
-    m = np.broadcast_to(body.mass_kg * np.eye(3), turn.shape)
+    C = np.broadcast_to(C, rotation.shape)
+    J = rotation @ inertia @ np.swapaxes(rotation, -1, -2) - body.mass_kg * C @ C
+    m = np.broadcast_to(body.mass_kg * np.eye(3), rotation.shape)
     six = np.block([[m, -body.mass_kg * C], [body.mass_kg * C, J]])
     rows = robot.balance_rows
     return np.asarray(six[..., rows[:, None], rows])
@@ -183,11 +174,11 @@ def _shape(statics: Statics, vector: FloatArray) -> FloatArray:
     """Return a shape as `Mode` has it, of a vector (dof,) in which turns are displacements."""
     robot, full = statics.robot, np.zeros(6)
     full[robot.balance_rows] = per_reach(robot) * vector
-    turned = (full.reshape(2, 3) @ robot.upright).ravel()
+    displacement = (full.reshape(2, 3) @ robot.upright).ravel()
     levers = robot.attachments_m @ statics.poses.rotation.T
-    moved = turned[:3] + np.cross(turned[3:], levers)
-    leading = turned[np.abs(turned).argmax()]
-    shape = turned / (np.linalg.norm(moved, axis=-1).max() * np.sign(leading))
+    moved = displacement[:3] + np.cross(displacement[3:], levers)
+    leading = displacement[np.abs(displacement).argmax()]
+    shape = displacement / (np.linalg.norm(moved, axis=-1).max() * np.sign(leading))
     return np.asarray(shape[: 3 if robot.is_point_mass else 6])
 
 

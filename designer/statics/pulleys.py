@@ -31,18 +31,12 @@ Answer = TypeVar("Answer")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PulleyRun:
-    """How the cables run over their pulleys.
+    """How the cables run over their pulleys."""
 
-    Parameters
-    ----------
-    exit_points_m : array (n_cables, 3) or (..., n_cables, 3)
-        Where the cables leave the pulleys, upright frame [m]; the exit points without pulleys.
-    wrap_m : array (..., n_cables) or zero
-        Length that lies on the pulleys [m].
-    """
-
+    #: (n_cables, 3) where the cables leave the pulleys, upright frame [m]; the exit points without
+    #: pulleys
     exit_points_m: FloatArray
-    wrap_m: FloatArray
+    wrap_m: FloatArray  #: (..., n_cables) length that lies on the pulleys [m]
 
     @property
     def has_wrap(self) -> bool:
@@ -141,7 +135,7 @@ def over_pulleys(
     slope = straight = _straight_slope_rad(robot, level)
     strain: FloatArray | float = 0.0
     share, gap = np.ones(poses.shape), np.full(poses.shape, np.inf)
-    for turn in range(turns):
+    for iteration in range(turns):
         run = run_at(robot, level, slope).unstrained(strain)
         answer, slope_over_pulley_rad, strain = solve(run)
         slope_over_pulley_rad = _slope_over_pulley_rad(
@@ -151,7 +145,7 @@ def over_pulleys(
         before, gap = gap, np.fmax.reduce(np.abs(step), axis=-1, initial=0.0)
         if np.all(gap <= STILL_RAD):
             break
-        swings = (turn >= _PATIENCE) & (gap > 0.5 * before) & (gap > SETTLED_RAD)
+        swings = (iteration >= _PATIENCE) & (gap > 0.5 * before) & (gap > SETTLED_RAD)
         share = np.where(swings, np.maximum(0.5 * share, _LEAST_SHARE), share)
         slope = slope + share[..., None] * step
     return answer, run, gap

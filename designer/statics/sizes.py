@@ -119,7 +119,7 @@ def add_slowly(
     statics = solve_sagging(robot, part, cable)
     is_solved, tension_N = statics.is_solved, statics.largest_tension_N
     hangs, length_m = statics.hangs_below, statics.length_m
-    allowable_N = np.array([each.allowable_tension_N for each in cables])[rows]
+    allowable_N = np.array([rope.allowable_tension_N for rope in cables])[rows]
     meets.failed[rows, at] = ~is_solved
     left_out = hangs & is_solved & leaves_out_hanging
     counts = is_solved & ~left_out

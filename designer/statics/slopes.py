@@ -20,7 +20,7 @@ it is the envelope theorem, and μ, σ and ρ are the multipliers of the optimum
 
 That F turns with everything else gives its slope in the load across the cable's plane:
 :math:`δF = δω × F - K (δω × e)`, e being the chord and δω the turn of the load; a pulley stays
-upright (`designer.statics.pull_slopes`).
+upright (`designer.statics.stiffness`).
 """
 
 from __future__ import annotations
@@ -31,47 +31,66 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.model.robot import Robot
+from designer.physics import catenary
 from designer.statics.geometry import cross_matrix, plane_vector
-from designer.statics.inverse import Statics
-from designer.statics.pull_slopes import pull_slopes
-from designer.statics.sag_slopes import SagSlopes, sag_slopes
-from designer.statics.shape import sag_ratio
-from designer.statics.stiffness import per_reach
+from designer.statics.inverse import Statics, sag_ratio
+from designer.statics.stiffness import per_reach, pull_slopes
 
 _TIED, _ACTIVE, _AT_SAG = 1e-7, 1e-5, 1e-4
 """Relative: tensions of the most used cables that are one, and what is at a limit of an optimum;
 the limit of the sag is kept with a margin where cables stretch."""
 _RANK, _LEFT, _NEGATIVE = 1e-9, 1e-4, -1e-6
 """Smallest singular value over the largest; what may be left of the conditions; no multiplier."""
+_STEP = 1e-6
+"""Relative, of central differences: the rest is about its square."""
 _UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class SagSlopes:
+    """Slopes of the sag over the chord of each cable (n,), its forces following."""
+
+    by_length: FloatArray  #: (n,) in the unstrained length [1/m]
+    by_stiffness: FloatArray  #: (n,) in the logarithm of EA
+    by_load: FloatArray  #: (n, 3) in the load per length [m/N]
+    by_chord: FloatArray  #: (n, 3) in the vector from exit point to attachment [1/m]
+
+
+def sag_slopes(
+    length_m: FloatArray, chord_m: FloatArray, EA_N: FloatArray, load_N_per_m: FloatArray
+) -> SagSlopes:
+    """Return the slopes for lengths and EA (n,), chords and loads per length (n, 3)."""
+    state = np.column_stack([length_m, np.log(EA_N), load_N_per_m, chord_m])
+    load, chord = (np.linalg.norm(v, axis=1) for v in (load_N_per_m, chord_m))
+    sizes = np.column_stack([length_m, np.ones_like(load), *[load] * 3, *[chord] * 3])
+    slopes = np.empty_like(state)
+    for k in range(state.shape[1]):
+        step = np.zeros_like(state)
+        step[:, k] = _STEP * sizes[:, k]
+        slopes[:, k] = (_sag_ratio(state + step) - _sag_ratio(state - step)) / (2.0 * step[:, k])
+    return SagSlopes(slopes[:, 0], slopes[:, 1], slopes[:, 2:5], slopes[:, 5:])
+
+
+def _sag_ratio(state: FloatArray) -> FloatArray:
+    length, EA, load, vector = state[:, 0], np.exp(state[:, 1]), state[:, 2:5], state[:, 5:]
+    weight, chord = np.linalg.norm(load, axis=1), np.linalg.norm(vector, axis=1)
+    D = np.einsum("nk,nk->n", vector, load) / weight
+    X = np.linalg.norm(vector - (D / weight)[:, None] * load, axis=1)
+    force_x, force_z = catenary.forces_from_length(length, X, D, EA, weight)
+    return np.asarray(catenary.sag_m(length, force_x, force_z, EA, weight, X, D) / chord)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Slopes:
-    """Slopes of the utilisation at one pose, the pose itself held.
+    """Slopes of the utilisation at one pose, the pose itself held."""
 
-    Parameters
-    ----------
-    cable : int
-        Whose utilisation it is, from 1; of an optimum one of those that are used alike.
-    utilisation : float
-        Its largest tension over its allowable tension.
-    load : array (dof,)
-        In the load wrench, upright frame [1/N, 1/(N·m)].
-    stiffness : array (n_cables,)
-        In the logarithm of each cable's EA.
-    cable_load_m_per_N : array (n_cables, 3)
-        In the load per unstrained length of each cable, base frame [m/N].
-    exit_points_per_m : array (n_cables, 3)
-        In the exit points, base frame [1/m].
-    """
-
-    cable: int
-    utilisation: float
-    load: FloatArray
-    stiffness: FloatArray
+    cable: int  #: whose utilisation it is, from 1; of an optimum one of those that are used alike
+    utilisation: float  #: its largest tension over its allowable tension
+    load: FloatArray  #: in the load wrench, upright frame [1/N, 1/(N·m)]
+    stiffness: FloatArray  #: (n_cables,) in the logarithm of each cable's EA
+    #: (n_cables, 3) in the load per unstrained length of each cable, base frame [m/N]
     cable_load_m_per_N: FloatArray
-    exit_points_per_m: FloatArray
+    exit_points_per_m: FloatArray  #: (n_cables, 3) in the exit points, base frame [1/m]
 
     @property
     def position_per_m(self) -> FloatArray:
@@ -131,14 +150,16 @@ def utilisation_slopes(
     top, low = _top_tension(cables), _least_tension(cables)
     used, least = top.value / allowable, robot.tension_min_N
     governing = used >= used.max() * (1.0 - (_ACTIVE if robot.is_redundant else _TIED))
-    sags = _largest_sags(statics)
+    sags = np.zeros(robot.n_cables, dtype=np.bool_)
+    if robot.is_redundant and robot.sag_max is not None:
+        sags = np.asarray(sag_ratio(statics)[0] >= robot.sag_max * (1.0 - _AT_SAG))
     slack = (low.value <= least * (1.0 + _ACTIVE)) & (robot.is_redundant and least > 0.0)
     if cable is not None and robot.is_redundant and not governing[cable - 1]:
         return ()
     if robot.pulley_radius_m != 0.0 and sags.any():  # that follow the tangent points
         return ()
-    each = np.flatnonzero(governing) if cable is None else [cable - 1]
-    one_by_one = [np.arange(robot.n_cables) == k for k in each]
+    numbers = np.flatnonzero(governing) if cable is None else [cable - 1]
+    one_by_one = [np.arange(robot.n_cables) == k for k in numbers]
     results = []
     for tops in [governing] if robot.is_redundant else one_by_one:
         solved = _multipliers(robot, cables, (top, low), (tops, slack, sags), allowable)
@@ -174,9 +195,9 @@ def _multipliers(
     residual = float(np.abs(matrix @ solved - right).max())
     if rank < len(shares) or not residual <= _LEFT or (solved[dof:] < _NEGATIVE).any():
         return None
-    each = np.zeros((3, n))
-    each[np.nonzero(active)] = solved[dof:]
-    top, low, sag = each
+    by_kind = np.zeros((3, n))
+    by_kind[np.nonzero(active)] = solved[dof:]
+    top, low, sag = by_kind
     balance = solved[:dof] * per_reach(robot)
     return _Multipliers(balance / scale_N, top / allowable_N, low / scale_N, sag)
 
@@ -190,18 +211,18 @@ def _slopes(
     used: FloatArray,
 ) -> Slopes:
     """Put the multipliers into the slopes of everything else."""
-    own_top, own_low = at.top[:, None], at.low[:, None]
-    h = own_top * top.by_pull - own_low * low.by_pull
+    top_share, low_share = at.top[:, None], at.low[:, None]
+    h = top_share * top.by_pull - low_share * low.by_pull
     h = h + np.einsum("ndk,d->nk", cables.wrench, at.balance)
-    by_load = own_top * top.by_load - own_low * low.by_load
+    by_load = top_share * top.by_load - low_share * low.by_load
     by_load[:, 2] -= np.einsum("nk,nk->n", h, cables.by_weight) / cables.weight
     for axis in range(2):  # across the load, which turns
-        turn = np.cross([0.0, 0.0, -1.0], np.eye(3)[axis])
-        moved = cables.by_turn @ turn / cables.weight[:, None]
+        rotation = np.cross([0.0, 0.0, -1.0], np.eye(3)[axis])
+        moved = cables.by_turn @ rotation / cables.weight[:, None]
         by_load[:, axis] += np.einsum("nk,nk->n", h, moved)
-    own_sag, sag = at.sag[:, None], cables.sag
-    by_load += own_sag * sag.by_load
-    by_exit_point = -np.einsum("nij,ni->nj", cables.K, h) - own_sag * sag.by_chord
+    sag_share, sag = at.sag[:, None], cables.sag
+    by_load += sag_share * sag.by_load
+    by_exit_point = -np.einsum("nij,ni->nj", cables.K, h) - sag_share * sag.by_chord
     cable = int(np.where(at.top > 0.0, used, 0.0).argmax())
     return Slopes(
         cable=cable + 1,
@@ -219,8 +240,8 @@ def _cables(statics: Statics) -> _CableSlopes:
     length, F_x, F_z, EA, w = (
         np.broadcast_to(v, (1, robot.n_cables))[0] for v in statics.catenaries
     )
-    turn = cross_matrix(geometry.lever_m[0])
-    wrench = np.concatenate([np.broadcast_to(np.eye(3), turn.shape), turn], axis=1)
+    lever = cross_matrix(geometry.lever_m[0])
+    wrench = np.concatenate([np.broadcast_to(np.eye(3), lever.shape), lever], axis=1)
     slopes = pull_slopes(statics)
     across, down = geometry.horizontal_distance_m[0], -geometry.drop_m[0]
     vector = plane_vector(across, down, geometry.outward[0])
@@ -236,14 +257,6 @@ def _cables(statics: Statics) -> _CableSlopes:
         wrench=wrench[:, robot.balance_rows],
         sag=sag_slopes(length, vector, EA, -w[:, None] * _UP),
     )
-
-
-def _largest_sags(statics: Statics) -> BoolArray:
-    """Tell which cables (n,) of a pose (1,) are at the largest sag that is allowed."""
-    robot = statics.robot
-    if not robot.is_redundant or robot.sag_max is None:
-        return np.zeros(robot.n_cables, dtype=np.bool_)
-    return np.asarray(sag_ratio(statics)[0] >= robot.sag_max * (1.0 - _AT_SAG))
 
 
 def _top_tension(cables: _CableSlopes) -> _Tension:

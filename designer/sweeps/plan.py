@@ -1,13 +1,18 @@
-"""What a sweep varies, with which values: read from ``SWEEP.yaml``, known before it begins."""
+"""What a sweep varies and keeps, read from ``SWEEP.yaml``; and one of its studies, solved.
+
+The points, and the kind of each result, are determined before the sweep begins. A point that is no
+valid study, or fails, is a result with its reason.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -15,6 +20,9 @@ import numpy as np
 from pydantic import AfterValidator, Field, ValidationError
 
 from designer import __version__
+from designer.analysis.analyse import Analysis
+from designer.analysis.pose import analyse_pose
+from designer.analysis.result_json import result_part, size_dict
 from designer.arrays import FloatArray
 from designer.documents.document import (
     Document,
@@ -26,15 +34,156 @@ from designer.documents.document import (
     read_document,
 )
 from designer.documents.fields import FreeMapping, Text, WholeNumber, different, list_of
+from designer.documents.plain import Json
 from designer.documents.section import Section, schema_faults
-from designer.errors import Fault, InputError
+from designer.effects.load import load_effects
+from designer.effects.registry import KnownEffects
+from designer.errors import DesignerError, Fault, InputError, described
+from designer.grades.registry import Catalogue, kept_catalogue
+from designer.io.config.reader import checked, study_of
+from designer.model.verdict import Verdict
+from designer.plugins import Plugins, find_plugins
 from designer.selection.candidate import common_currency
 from designer.selection.prices import offered, with_prices
+from designer.spelling import did_you_mean
 from designer.study import Study
-from designer.sweeps.point import Base, value_at, why_no_value
 from designer.units import describe
 
+Change = tuple[tuple[Key, ...], Node]
+
+
 MOST_POINTS = 10_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Base:
+    """The study that a sweep starts from, and what is kept of those made of it."""
+
+    document: Document
+    keep: tuple[str, ...]  #: paths into ``result.json``
+    with_plugins: bool = True
+
+    def study(self, changes: Sequence[Change] = ()) -> Study:
+        """Return the study with some values put in.
+
+        Raises
+        ------
+        InputError
+            If it is none then.
+        """
+        root = self.document.root
+        for keys, node in changes:
+            root = root.with_value(keys, node)
+        plugins, effects = _plugins(self.with_plugins)
+        document = replace(self.document, root=root)
+        path = Path(document.name)
+        return study_of(checked(document, effects), document, path, effects, plugins)
+
+    def catalogue(self, study: Study | None = None) -> Catalogue:
+        """Return the grades that its studies, or one of them, choose from."""
+        return kept_catalogue((study or self.study()).catalogues, _plugins(self.with_plugins)[0])
+
+    def result(self, study: Study) -> Json:
+        """Return as much of ``result.json`` as what is kept of it asks for."""
+        parts = {name.split(".")[0] for name in self.keep}
+        if parts <= {"pose", "name"}:
+            return size_dict(study, analyse_pose(study), self.keep)
+        # A proof may take its whole budget for each of thousands of studies.
+        if "proof" not in parts:
+            study = study.unproved
+        return result_part(Analysis.begin(study, self.catalogue(study), keep=self.keep))
+
+
+@cache
+def _plugins(with_plugins: bool) -> tuple[Plugins, KnownEffects]:
+    plugins = find_plugins(with_plugins)
+    return plugins, load_effects(plugins)
+
+
+def value_at(result: Json, path: str) -> Any:
+    """Return what a result holds at a path such as ``selection.chosen.utilisation``.
+
+    None where a part on the way is None: there is no such result.
+
+    Raises
+    ------
+    KeyError
+        If results never have it; carries the names that there are in its place.
+    """
+    value: Any = result
+    for key in path.split("."):
+        if value is None:
+            return None
+        names = list(map(str, range(len(value)))) if isinstance(value, list) else value
+        if not isinstance(names, dict | list) or key not in names:
+            raise KeyError(key, list(names) if isinstance(names, dict | list) else [])
+        value = value[int(key)] if isinstance(value, list) else value[key]
+    return value
+
+
+def why_no_value(error: KeyError) -> tuple[str, str]:
+    """Return the problem with a path that `value_at` refuses, and what was expected."""
+    key, names = error.args
+    expected = f"one of {', '.join(names[:20])}{did_you_mean(key, names)}"
+    return f"results have no '{key}' there", expected
+
+
+def solve_points(base: Base, points: Sequence[Sequence[Change]]) -> list[tuple[list[Any], str]]:
+    """Return of each point what is kept, and why there is nothing of it where there is not.
+
+    A study that is none, or fails, is a result like others: one of many must not end the rest.
+    Runs on one thread: as many processes as processors are at work.
+    """
+    import numba
+    from threadpoolctl import threadpool_limits
+
+    numba.set_num_threads(1)
+    with threadpool_limits(1):
+        return [_solve(base, changes) for changes in points]
+
+
+def _solve(base: Base, changes: Sequence[Change]) -> tuple[list[Any], str]:
+    try:
+        result = base.result(base.study(changes))
+    except Exception as error:  # whatever a plugin or a library may raise
+        return [None] * len(base.keep), why_not(error)
+    values: list[Any] = []
+    reasons = [why_negative(result)]
+    for name in base.keep:
+        try:
+            values.append(value_at(result, name))
+        except KeyError:  # such as the tension of a fourth cable where there are three
+            values.append(None)
+            reasons.append(f"there is no {name} here")
+    return values, "; ".join(filter(None, reasons))
+
+
+def why_not(error: Exception) -> str:
+    """Return in a line why a study gave no result."""
+    if isinstance(error, InputError):
+        fault = error.faults[0]
+        expected = f" (expected {fault.expected})" if fault.expected else ""
+        return f"{fault.field}: {fault.problem}{expected}"
+    if isinstance(error, DesignerError):
+        return str(error).partition("\n")[0]
+    if isinstance(error, KeyError):
+        return f"there is no {error.args[0]} in this result"
+    return described(error)
+
+
+def why_negative(result: Json) -> str:
+    """Return why a result is no answer, in a line; empty where it is one."""
+    pose = result.get("pose")
+    if pose is not None and pose["sagging"]["status"] != "solved":
+        return f"the configured pose: {Verdict[pose['sagging']['status'].upper()].reason}"
+    answer, workspace = result.get("answer"), result.get("workspace")
+    if answer is None:  # not evaluated: what is kept does not take it
+        is_held = workspace is None or workspace["sagging"] is not None
+        return "" if is_held else "no cable of the family holds in all of the workspace"
+    return "; ".join(
+        f"{requirement['id']} in {requirement['load_case']}: {requirement['state']}"
+        for requirement in answer["reasons"]
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,26 +211,27 @@ class Range:
 
 @dataclass(frozen=True, slots=True)
 class ValueList:
-    """Values of a field that are told one by one; ``numbers`` are they if all are numbers."""
+    """Values of a field, as a list."""
 
     keys: tuple[Key, ...]
     nodes: tuple[Node, ...]
     unit: str = ""
-    numbers: FloatArray | None = None
+    numbers: FloatArray | None = None  #: the values, if all are numbers of one unit
 
     @property
     def labels(self) -> FloatArray | np.ndarray:
         """What the store holds for each."""
-        texts = [node.as_written() for node in self.nodes]
-        return np.array(texts, dtype=object) if self.numbers is None else self.numbers
+        if self.numbers is not None:
+            return self.numbers
+        return np.array([node.as_written() for node in self.nodes], dtype=object)
 
 
 @dataclass(frozen=True, slots=True)
 class SweptField:
-    """The values of one field at all points, and those as the store holds them."""
+    """The values of one field at all points."""
 
     varied: Range | ValueList
-    values: np.ndarray
+    values: np.ndarray  #: (n_points,) numbers of a range, or indices into a list
 
     @property
     def name(self) -> str:
@@ -103,31 +253,18 @@ class SweptField:
 
 @dataclass(frozen=True, slots=True)
 class SweepPlan:
-    """A sweep: the study it starts from, its points, what is kept of each.
+    """A sweep: the study it starts from, its points, what is kept of each."""
 
-    Parameters
-    ----------
-    base : Base
-        The study, as it is written, and what is kept of each.
-    columns : tuple of SweptField
-        The fields that are varied.
-    kinds : mapping
-        Of each path that is kept, whether it is a number (`float`) or a text (`str`).
-    goals : mapping
-        Of numbers that are kept: 1 for the less the better, -1 for the more the better.
-    attributes : mapping
-        Of prices that are kept: their currency as ``units``, and ``estimate`` where they are
-        borrowed; the same at all points.
-    digest : str
-        SHA-256 of all that the results depend on.
-    """
-
-    base: Base
-    columns: tuple[SweptField, ...]
+    base: Base  #: the study, as it is written, and what is kept of each
+    columns: tuple[SweptField, ...]  #: the fields that are varied
+    #: of each path that is kept, whether it is a number (`float`) or a text (`str`)
     kinds: Mapping[str, type]
+    #: of numbers that are kept: 1 for the less the better, -1 for the more the better
     goals: Mapping[str, int]
+    #: of prices that are kept: their currency as ``units``, and ``estimate`` where they are
+    #: borrowed; the same at all points
     attributes: Mapping[str, Mapping[str, str]]
-    digest: str
+    digest: str  #: SHA-256 of all that the results depend on
 
     @property
     def n_points(self) -> int:
@@ -142,20 +279,10 @@ class SweepPlan:
 def columns_of(
     varied: tuple[Range | ValueList, ...], sampling: str, points: int, seed: int
 ) -> tuple[SweptField, ...]:
-    """Return the values at all points.
+    """Return the values at all points; on a grid the last field varies fastest.
 
-    Parameters
-    ----------
-    varied : tuple of Range or ValueList
-        In the order of the file; on a grid the last varies fastest.
-    sampling : str
-        ``grid``, ``random`` or ``latin_hypercube``.
-    points, seed : int
-        For the last two.
-
-    References
-    ----------
-    McKay, Beckman and Conover, Technometrics 21 (1979): Latin hypercubes.
+    ``points`` and ``seed`` are those of ``random`` and ``latin_hypercube`` (McKay, Beckman and
+    Conover, Technometrics 21, 1979).
     """
     if sampling == "grid":
         axes = [
@@ -235,23 +362,18 @@ def read_sweep(path: Path, with_plugins: bool) -> SweepPlan:
     columns = columns_of(
         tuple(fields.values()), section.sampling, section.points or 0, section.seed
     )
-    studies = list(_studies(base, fields.values()))
+    studies = [base.study()]
+    for field in fields.values():  # a value that is no number may name another file
+        if isinstance(field, ValueList) and field.numbers is None:
+            for node in field.nodes:
+                with suppress(InputError):  # such points are stored with their reason
+                    studies.append(base.study([(field.keys, node)]))
     files = [source.sha256 for study in studies for source in base.catalogue(study).sources]
     files += [sha256 for study in studies for _, sha256 in study.source.tables]
     origin = [document.root.as_written(), base.document.sha256, *dict.fromkeys(files), __version__]
     digest = hashlib.sha256(json.dumps(origin).encode()).hexdigest()
     attributes = _price_attributes(document, studies, base)
     return SweepPlan(base, columns, kinds, goals, attributes, digest)
-
-
-def _studies(base: Base, varied: Iterable[Range | ValueList]) -> Iterator[Study]:
-    """Yield the study as it is, and with each value that is no number: it may name another file."""
-    yield base.study()
-    for field in varied:
-        if isinstance(field, ValueList) and field.numbers is None:
-            for node in field.nodes:
-                with suppress(InputError):  # such points are kept with their reason
-                    yield base.study([(field.keys, node)])
 
 
 def _price_attributes(
@@ -267,8 +389,11 @@ def _price_attributes(
     names = [name for name in base.keep if name.endswith(".cost")]
     if not names:
         return {}
-    each = [_attributes_of_prices(study, base) for study in studies]
-    kinds = [prices for k, prices in enumerate(each) if prices and prices not in each[:k]]
+    kinds: list[dict[str, str]] = []
+    for study in studies:
+        prices = _attributes_of_prices(study, base)
+        if prices and prices not in kinds:
+            kinds.append(prices)
     if len(kinds) > 1:
         words = " and ".join(
             f"borrowed in {prices['units']}" if "estimate" in prices else f"in {prices['units']}"
@@ -342,7 +467,12 @@ def _varied(
     node = document.root.at(place)
     assert node is not None
     if isinstance(node.content, tuple) and node.content:
-        return _choice(path_keys(name), node.content)
+        parts = [item.quantity() for item in node.content]
+        units = {None if part is None else part[1] for part in parts}
+        if None in units or len(units) > 1:
+            return ValueList(path_keys(name), node.content)
+        numbers = np.array([part[0] for part in parts if part is not None])
+        return ValueList(path_keys(name), node.content, units.pop() or "", numbers)
     if not isinstance(node.content, dict):
         problem = (
             "the list is empty" if node.content == () else f"{describe(node.data())} is no list"
@@ -369,16 +499,6 @@ def _varied(
         return Range(path_keys(name), low[0], high[0], low[1], n)
     faults.append(document.fault(place, problem, f"{_LISTED}; both ends in one unit"))
     return None
-
-
-def _choice(keys: tuple[Key, ...], nodes: tuple[Node, ...]) -> ValueList:
-    """Return values that are numbers if all are, in one unit."""
-    parts = [node.quantity() for node in nodes]
-    units = {None if part is None else part[1] for part in parts}
-    if None in units or len(units) > 1:
-        return ValueList(keys, nodes)
-    numbers = np.array([part[0] for part in parts if part is not None])
-    return ValueList(keys, nodes, units.pop() or "", numbers)
 
 
 def _faults_of_fields(

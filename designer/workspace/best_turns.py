@@ -39,35 +39,25 @@ _CHECKED = 64
 
 @dataclass(frozen=True, eq=False)
 class BestTurns(Following):
-    """The orientation in a range that needs the thinnest cable of a family, at each position.
+    """The orientation in a range that needs the thinnest cable of a family, at each position."""
 
-    Parameters
-    ----------
-    robot, material
-        Without load cases, as drawn; and the family.
-    region : Region
-        Whose positions are asked; elsewhere the law goes on as it is at its rim.
-    range_rad : array (2, 3)
-        Lowest and highest components of the rotation vector [rad].
-    hangs_below : str
-        See `Workspace`; an orientation whose pose is left out is not taken.
-    """
-
-    robot: Robot
-    material: Material
-    region: Region
+    robot: Robot  #: without load cases, as drawn
+    material: Material  #: the family
+    region: Region  #: whose positions are asked; elsewhere the law goes on as it is at its rim
+    #: (2, 3) lowest and highest components of the rotation vector [rad]
     range_rad: Annotated[FloatArray, checked.Shape((2, 3))]
+    #: see `Workspace`; an orientation whose pose is left out is not taken
     hangs_below: HangsBelow = "include"
 
     @cached_property
     def table(self) -> TurnTable:
         """The law: the best orientations where they were sought; level where none holds."""
         positions = self._positions_m(_NODES, 0)
-        turns, diameter_m = self.best(positions)
+        rotations, diameter_m = self.best(positions)
         is_held = np.isfinite(diameter_m)
         if not is_held.any():
             return TurnTable(positions[:1], np.clip(np.zeros((1, 3)), *self.range_rad))
-        return TurnTable(frozen_array(positions[is_held]), frozen_array(turns[is_held]))
+        return TurnTable(frozen_array(positions[is_held]), frozen_array(rotations[is_held]))
 
     @cached_property
     def excess(self) -> float:
@@ -121,16 +111,16 @@ class BestTurns(Following):
         for _ in range(1 + _STEPS):
             grid = np.zeros((len(steps) ** len(free), 3))
             grid[:, free] = list(product(steps, repeat=len(free)))
-            turns = np.clip(best[:, None] + grid * reach, low, high)
+            rotations = np.clip(best[:, None] + grid * reach, low, high)
             places = np.concatenate(
-                [np.broadcast_to(positions_m[:, None], turns.shape), turns], axis=-1
+                [np.broadcast_to(positions_m[:, None], rotations.shape), rotations], axis=-1
             )
             diameter_m = self._diameter_m(places.reshape(-1, 6)).reshape(n, -1)
-            size = np.linalg.norm(turns, axis=2) / np.abs(self.range_rad).max()
+            size = np.linalg.norm(rotations, axis=2) / np.abs(self.range_rad).max()
             value = diameter_m * (1.0 + _TIE * size**2)
             row, at = np.arange(n), value.argmin(axis=1)
             better = value[row, at] < least
-            best = np.where(better[:, None], turns[row, at], best)
+            best = np.where(better[:, None], rotations[row, at], best)
             need = np.where(better, diameter_m[row, at], need)
             least = np.minimum(least, value[row, at])
             if len(steps) > len(_BESIDE):

@@ -1,4 +1,4 @@
-"""The smallest distance among the cables of a pose, and between them and the platform.
+"""The smallest distance among the cables, and between them and the platform: of poses, of a region.
 
 Each cable is taken in its true shape. A first pass over coarse pieces with a bound on what these
 cut off finds which cables can come nearest; a second one looks at finer pieces there. Distances
@@ -7,32 +7,161 @@ are from axis to axis: half the diameters are not taken off.
 Cables that share an exit point or an attachment are not compared: they hang in two vertical planes
 that meet in the upright line through that point, and there they part. A cable is compared with the
 platform's hull but for its last piece, which is meant to be near: see `cable_margin_m`.
+
+Over a workspace some samples are looked at first, then what lies between them is searched.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
-from itertools import combinations
+from dataclasses import dataclass, fields, replace
+from itertools import combinations, pairwise
 from typing import Any
 
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.calling import plain
+from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
+from designer.physics import catenary
 from designer.statics.geometry import upright_poses
-from designer.statics.inverse import Statics
-from designer.workspace.hull import Hull, platform_hull
-from designer.workspace.shapes import Curves, Polylines
+from designer.statics.inverse import Statics, solve_sagging
+from designer.workspace.demand import is_counted, is_left_out
+from designer.workspace.refine import LIGHT, ONE_CLIMB, places_of, refine
 
 PLATFORM = -1
 """Stands for the platform where a pair is a cable and the platform."""
-
+MOST_SAMPLES = 1000
+"""Poses of a workspace that are looked at before the search between them."""
+_FLAT = 1e-9
+"""Relative: below it a hull has no extent in a direction."""
 _ROUGH, _COARSE, _FINE = 8, 24, 12
+"""Pieces of a cable: where only starts are sought, in the first pass, and in each finer one."""
 _FINER_PASSES = 3
 _COINCIDENT = 1e-9
+"""Relative: points of cables no farther apart are the same."""
 _CHUNK = 256
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hull:
+    """A convex body, or a flat one without a volume."""
+
+    triangles_m: FloatArray  #: (n_triangles, 3, 3): Its surface, body frame [m]
+    #: (n_faces, 4): Outward unit normals and offsets: `normal · x + offset ≤ 0` for all of them in
+    # the body, and for no other point [-, m]
+    halfspaces: FloatArray
+
+    @property
+    def extent_m(self) -> float:
+        """Largest distance of two of its corners [m]."""
+        corners = self.triangles_m.reshape(-1, 3)
+        return float(np.linalg.norm(corners[:, None] - corners, axis=-1).max())
+
+    def heights_m(self, points_m: FloatArray) -> FloatArray:
+        """Return how far points (..., 3) lie beyond each face (..., n_faces) [m]."""
+        return np.asarray(points_m @ self.halfspaces[:, :3].T + self.halfspaces[:, 3])
+
+    def depth_m(self, points_m: FloatArray) -> FloatArray:
+        """Return how far below the surface points (..., 3) lie; zero outside [m]."""
+        return np.asarray(np.maximum(-self.heights_m(points_m).max(axis=-1), 0.0))
+
+
+def platform_hull(robot: Robot) -> Hull | None:
+    """Return the hull that the study gives, or that of the attachments; None for a point mass.
+
+    None as well where all attachments lie on one line.
+    """
+    if robot.is_point_mass:
+        return None
+    hull_m = robot.platform.hull_m
+    corners = robot.attachments_m if hull_m is None else hull_m
+    middle = corners.mean(axis=0)
+    _, spread, axes = np.linalg.svd(corners - middle)
+    if spread[1] <= _FLAT * spread[0]:
+        return None
+    from scipy.spatial import ConvexHull
+
+    if spread[2] > _FLAT * spread[0]:
+        hull = ConvexHull(corners)
+        return Hull(corners[hull.simplices], hull.equations)
+    # A convex polygon, as a fan of triangles, between two faces and within its edges.
+    outline = ConvexHull((corners - middle) @ axes[:2].T)
+    ring = corners[outline.vertices]
+    fan = [np.stack([ring[0], b, c]) for b, c in pairwise(ring[1:])]
+    edges = outline.equations[:, :2] @ axes[:2]
+    normals = np.concatenate([axes[2:], -axes[2:], edges])
+    within = np.concatenate([[0.0, 0.0], outline.equations[:, 2]])
+    return Hull(np.array(fan), np.column_stack([normals, within - normals @ middle]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curves:
+    """Cables of many poses, any of which can be sampled anywhere."""
+
+    start_m: FloatArray  #: (n_curves, 3): Where they leave base or pulley, upright frame [m]
+    outward: FloatArray  #: (n_curves, 2): Horizontal unit vector of the plane that each hangs in
+    #: (n_curves,): As in `designer.physics.catenary`; the length is that from pulley to platform
+    length_m: FloatArray
+    force_x_N: FloatArray
+    force_z_N: FloatArray
+    axial_stiffness_N: FloatArray
+    weight_N_per_m: FloatArray
+
+    @classmethod
+    def of(cls, statics: Statics) -> Curves:
+        """Return the cables of poses (n_poses,), cable by cable within pose by pose."""
+        shape = statics.length_m.shape
+
+        def flat(values: FloatArray) -> FloatArray:
+            return np.broadcast_to(values, shape).reshape(-1)
+
+        return cls(
+            start_m=np.broadcast_to(statics.run.exit_points_m, (*shape, 3)).reshape(-1, 3),
+            outward=statics.geometry().outward.reshape(-1, 2),
+            length_m=flat(statics.free_length_m),
+            force_x_N=flat(statics.force_x_N),
+            force_z_N=flat(statics.force_z_N),
+            axial_stiffness_N=flat(statics.axial_stiffness_N),
+            weight_N_per_m=flat(statics.weight_N_per_m),
+        )
+
+    def polylines(
+        self, which: IntArray, low: FloatArray, high: FloatArray, segments: int
+    ) -> Polylines:
+        """Return polylines through points of the curves, evenly spaced in unstrained length.
+
+        Of the curves of these numbers (n,), each from ``low`` to ``high`` (n,), shares of its
+        unstrained length.
+        """
+        share = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, segments + 1)
+        length = self.length_m[which, None]
+        s = share * length
+        F_x, F_z = self.force_x_N[which, None], self.force_z_N[which, None]
+        EA, w = self.axial_stiffness_N[which, None], self.weight_N_per_m[which, None]
+        x, z = catenary.position_m(s, length, F_x, F_z, EA, w)
+        plan = x[..., None] * self.outward[which, None, :]
+        points = self.start_m[which, None, :] + np.concatenate([plan, z[..., None]], axis=-1)
+        slope = np.arctan2(F_z + w * (s - length), F_x)
+        # A convex plane arc lies in the triangle of its chord and its end tangents; with a turn φ
+        # from one tangent to the other its height is at most c/2 tan(φ/2). Where the arc folds
+        # over, it is still no farther from the chord's ends than half its length, here bounded by
+        # the triangle of a nearly full turn.
+        chord = np.linalg.norm(np.diff(points, axis=-2), axis=-1)
+        angle = np.minimum(np.abs(np.diff(slope, axis=-1)), 0.999 * np.pi)
+        return Polylines(points, share, 0.5 * chord * np.tan(0.5 * angle))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Polylines:
+    """Points of curves, and how far the curves stray from the straight pieces between them."""
+
+    points_m: FloatArray  #: (n, segments + 1, 3): Upright frame [m]
+    share: FloatArray  #: (n, segments + 1): Where they lie, as shares of the unstrained length
+    #: (n, segments): No point of the curve is farther than this from its straight piece [m]
+    sagitta_m: FloatArray
 
 
 def names_of(pair: tuple[int, int]) -> tuple[str, str]:
@@ -48,11 +177,11 @@ def names_of(pair: tuple[int, int]) -> tuple[str, str]:
 class Clearance:
     """How near things come in each pose; NaN where it is not solved or nothing is compared."""
 
-    distance_m: FloatArray  # (...): Smallest distance [m]
-    # (..., 2) of int: Between which: numbers of two cables from 0, or of a cable and `PLATFORM`
+    distance_m: FloatArray  #: (...): Smallest distance [m]
+    #: (..., 2) of int: Between which: numbers of two cables from 0, or of a cable and `PLATFORM`
     pair: IntArray
-    place_m: FloatArray  # (..., 3): Where, base frame [m]
-    # (...): The true distance is smaller than `distance_m` by no more than this [m]
+    place_m: FloatArray  #: (..., 3): Where, base frame [m]
+    #: (...): The true distance is smaller than `distance_m` by no more than this [m]
     error_m: FloatArray
 
     def each(self) -> Iterator[Any]:
@@ -125,10 +254,10 @@ def _in_chunks(
         part = function(poses, Curves.of(poses))
         if part is None:
             break
-        row, tried = part
+        row, candidates = part
         # In descending order the last entry of each pose, its smallest, is what stays.
-        order = np.argsort(-tried.distance_m, kind="stable")
-        for all_of, values in zip(clearance.each(), tried.each(), strict=True):
+        order = np.argsort(-candidates.distance_m, kind="stable")
+        for all_of, values in zip(clearance.each(), candidates.each(), strict=True):
             all_of[rows[row[order]]] = values[order]
     return Clearance(*(all_of.reshape((*shape, *all_of.shape[1:])) for all_of in clearance.each()))
 
@@ -297,3 +426,114 @@ def _around(piece: Polylines, at: IntArray) -> tuple[FloatArray, FloatArray]:
 
 def _pick(lines: Polylines, which: IntArray) -> Polylines:
     return Polylines(lines.points_m[which], lines.share[which], lines.sagitta_m[which])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Nearest:
+    """The pose in which two things come nearest to each other."""
+
+    distance_m: float  #: how near [m]
+    error_m: float  #: the true distance there is smaller by no more than this [m]
+    pair: tuple[int, int]  #: two cables, from 0, or a cable and `PLATFORM`
+    place: FloatArray  #: (n_coordinates,) see `designer.model.space` [m, rad]
+    point_m: FloatArray  #: (3,) where the two are nearest, base frame [m]
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Names of the two, cables counted from 1."""
+        return names_of(self.pair)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Interference:
+    """Clearances over the workspace."""
+
+    clearance_m: float  #: what is asked for [m]
+    samples: int  #: poses that were looked at and count
+    violating: int  #: those of them that keep less
+    #: worst pose for two cables; None where no two cables can be compared
+    among_cables: Nearest | None
+    to_platform: Nearest | None  #: worst pose for a cable and the platform; None for a point mass
+
+    @property
+    def worst(self) -> Nearest | None:
+        """The nearer of the two."""
+        clearances = [
+            clearance
+            for clearance in (self.among_cables, self.to_platform)
+            if clearance is not None
+        ]
+        return min(clearances, key=lambda clearance: clearance.distance_m, default=None)
+
+    @property
+    def is_violated(self) -> bool:
+        """Whether less than the clearance is kept somewhere, as far as was looked."""
+        return self.worst is not None and self.worst.distance_m < self.clearance_m
+
+
+def where_pairs_are_near(
+    robot: Robot, workspace: Workspace, cable: Cable | Cables, places: FloatArray
+) -> FloatArray:
+    """Return where each pair of cables comes near (n, n_coordinates), by a short climb from places.
+
+    Starts for a search of the smallest clearance: some pairs cross in so small a part of the space
+    that no sample shows it. None in a space in which every place is tried.
+    """
+
+    def nearness(places: FloatArray) -> FloatArray:
+        statics = solve_sagging(robot, Poses.at(places), cable)
+        distance = distances_among_cables_m(statics)
+        distance[is_left_out(statics, workspace.hangs_below)] = np.nan
+        return -np.nan_to_num(distance, nan=np.inf)
+
+    space = workspace.space
+    if space.is_discrete or not len(cable_pairs(robot)):
+        return np.empty((0, space.n_coordinates))
+    return places_of(refine(space, nearness, places, ONE_CLIMB))
+
+
+def survey(
+    robot: Robot, workspace: Workspace, cable: Cable | Cables, clearance_m: float
+) -> Interference:
+    """Look for the smallest clearances in a workspace: `MOST_SAMPLES` first, then between them."""
+    thinned = workspace.thinned(MOST_SAMPLES)
+    statics = solve_sagging(robot, Poses.at(thinned), cable)
+
+    def counted(among: Callable[[Statics], Clearance], statics: Statics) -> Clearance:
+        clearance, is_out = among(statics), is_left_out(statics, workspace.hangs_below)
+        return replace(clearance, distance_m=np.where(is_out, np.nan, clearance.distance_m))
+
+    cables = counted(clearance_among_cables, statics)
+    platform = counted(clearance_to_platform, statics)
+
+    def nearest(
+        among: Callable[[Statics], Clearance], sampled: Clearance, starts: FloatArray
+    ) -> Nearest | None:
+        def clearance(places: FloatArray) -> Clearance:
+            poses = Poses.at(places)
+            return counted(among, solve_sagging(robot, poses, cable))
+
+        def nearness(places: FloatArray) -> FloatArray:
+            return -np.nan_to_num(clearance(places).distance_m, nan=np.inf)
+
+        if np.isnan(sampled.distance_m).all():
+            return None
+        (worst,) = refine(workspace.space, nearness, starts, LIGHT)
+        closest = clearance(worst.place[None])
+        first, second = (int(number) for number in closest.pair[0])
+        return Nearest(
+            distance_m=float(closest.distance_m[0]),
+            error_m=float(closest.error_m[0]),
+            pair=(first, second),
+            place=worst.place,
+            point_m=closest.place_m[0],
+        )
+
+    starts_near = np.concatenate([thinned, where_pairs_are_near(robot, workspace, cable, thinned)])
+    return Interference(
+        clearance_m=clearance_m,
+        samples=int(is_counted(statics, workspace.hangs_below).sum()),
+        violating=int((cables.nearer(platform).distance_m < clearance_m).sum()),
+        among_cables=nearest(clearance_among_cables, cables, starts_near),
+        to_platform=nearest(clearance_to_platform, platform, thinned),
+    )

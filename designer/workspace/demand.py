@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import chain
+
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.cable import Cable, Cables, Material, MaterialsByPose
 from designer.model.load_case import Loaded
 from designer.model.robot import Poses, Robot
@@ -13,7 +17,11 @@ from designer.model.verdict import Verdict
 from designer.model.workspace import HangsBelow, Workspace
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.cable_loss import CableLoss, settle
-from designer.statics.inverse import Statics, solve_massless, solve_sagging
+from designer.statics.inverse import Statics, solve_massless, solve_sagging, tension_over_least
+from designer.workspace.refine import ONE_CLIMB, places_of, refine_each
+
+_TWO_CLIMBS = replace(ONE_CLIMB, inside=512, starts=2)
+"""For each cable: what straight ones give is searched again with the cable's weight."""
 
 
 def is_left_out(statics: Statics, hangs_below: HangsBelow) -> BoolArray:
@@ -142,3 +150,24 @@ def demand_of(value: FloatArray, statics: Statics, hangs_below: HangsBelow) -> F
     """Return values (...) as demands: inf where a pose is not solved, -inf where it is left out."""
     demand = np.where(statics.is_solved, value, np.inf)
     return np.where(is_left_out(statics, hangs_below), -np.inf, demand)
+
+
+def where_each_pulls_most(robots: Sequence[Robot], space: Space, places: FloatArray) -> FloatArray:
+    """Return where each straight cable pulls most (n, n_coordinates), by a short climb from places.
+
+    Of one robot under one or several loads. Some cables of redundant robots have their least
+    tension in almost every pose, and nothing there leads a search to the few in which they carry.
+    With straight cables something does: how far each is from it. None for other robots, nor in a
+    space in which every place is tried.
+    """
+    if space.is_discrete or not robots[0].is_redundant:
+        return np.empty((0, space.n_coordinates))
+
+    def pull(places: FloatArray, load: IntArray) -> FloatArray:
+        loads, first = np.unique(load, return_index=True)
+        parts = zip(loads, np.split(places, first[1:]), strict=True)
+        over = [tension_over_least(robots[k], Poses.at(part)) for k, part in parts]
+        return np.nan_to_num(np.concatenate(over), nan=-np.inf)
+
+    worsts = refine_each(space, pull, [places] * len(robots), _TWO_CLIMBS)
+    return places_of(chain.from_iterable(worsts))

@@ -14,15 +14,103 @@ beside it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.space import Space
 from designer.model.workspace import Workspace
-from designer.workspace.climbs import Climbs
-from designer.workspace.pool import CELLS_A_SIDE, Pool, local_maxima
+
+CELLS_A_SIDE = 12
+"""Parts of the space along each axis, of which a `Pool` keeps the largest demand."""
+
+
+class Pool:
+    """The places of largest demand of a sweep, one for each small part of the space.
+
+    Memory does not grow with the number of places.
+    """
+
+    def __init__(self, space: Space) -> None:
+        self._space = space
+        self._places, self._values = np.empty((0, space.n_coordinates)), np.empty(0)
+
+    def add(self, places: FloatArray, values: FloatArray) -> None:
+        """Take in places (n, n_coordinates) and what they ask for (n,)."""
+        places = np.concatenate([self._places, places])
+        values = np.concatenate([self._values, values])
+        best_of_cells = _best_of_cells(self._space, places, values)
+        self._places, self._values = places[best_of_cells], values[best_of_cells]
+
+    @property
+    def places(self) -> FloatArray:
+        """Return the largest of each part, those left out that do not count (n, n_coordinates)."""
+        return self._places[~np.isneginf(self._values)]
+
+
+def _best_of_cells(space: Space, places: FloatArray, values: FloatArray) -> IntArray:
+    """Return the index of the largest value in each part of the space, the largest first."""
+    x, y, z, rotation = space.cells(places, CELLS_A_SIDE).T
+    cell = ((rotation * CELLS_A_SIDE + x) * CELLS_A_SIDE + y) * CELLS_A_SIDE + z
+    best = np.full(cell.max(initial=0) + 1, -np.inf)
+    np.fmax.at(best, cell, values)
+    tops = np.flatnonzero(values >= best[cell])  # a few, and those of one cell that are as large
+    order = tops[np.argsort(-values[tops], kind="stable")]
+    _, first = np.unique(cell[order], return_index=True)
+    return np.asarray(order[np.sort(first)])
+
+
+def local_maxima(space: Space, places: FloatArray, values: FloatArray, number: int) -> IntArray:
+    """Return the indices of places that none in the parts around theirs exceed, largest first."""
+    from scipy.ndimage import maximum_filter
+
+    best_of_cells = _best_of_cells(space, places, values)
+    best_of_cells = best_of_cells[~np.isneginf(values[best_of_cells])]
+    x, y, z, rotation = cell = space.cells(places[best_of_cells], CELLS_A_SIDE).T
+    highest = np.full((*[CELLS_A_SIDE] * 3, int(rotation.max(initial=0)) + 1), -np.inf)
+    highest[*cell] = values[best_of_cells]
+    is_top = maximum_filter(highest, size=(3, 3, 3, 1))[x, y, z, rotation] == values[best_of_cells]
+    return np.asarray(best_of_cells[is_top][:number])
+
+
+@dataclass(slots=True, eq=False)
+class Climbs:
+    """Climbs of all searches, those of one search beside each other."""
+
+    search: IntArray  #: (n_climbs,) number of the search
+    extreme: IntArray  #: (n_climbs,) number of its demand
+    at: FloatArray  #: (n_climbs, n_coordinates) where it is [m, rad]
+    value: FloatArray  #: (n_climbs,) the demand there
+    radius: FloatArray  #: (n_climbs,) size of the next cloud, as a share of the space
+    step: FloatArray  #: (n_climbs, n_coordinates) the last step [m, rad]
+
+    def __len__(self) -> int:
+        return len(self.search)
+
+    @property
+    def kind(self) -> IntArray:
+        """Number of its search and extreme together (n_climbs,)."""
+        return np.asarray(self.search * (self.extreme.max(initial=0) + 1) + self.extreme)
+
+    def part(self, rows: IntArray) -> Climbs:
+        """Return some of them."""
+        return Climbs(*(getattr(self, field.name)[rows] for field in fields(self)))
+
+    @classmethod
+    def beginning(
+        cls, search: IntArray, extreme: IntArray, at: FloatArray, value: FloatArray, radius: float
+    ) -> Climbs:
+        """Return climbs that have not moved yet."""
+        return cls(search, extreme, at, value, np.full(len(at), radius), np.zeros_like(at))
+
+    @classmethod
+    def joined(cls, parts: Sequence[Climbs]) -> Climbs:
+        """Return the climbs of several parts as one."""
+        names = (field.name for field in fields(cls))
+        climbs = cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+        return climbs.part(np.argsort(climbs.search, kind="stable"))
+
 
 Demand = Callable[..., FloatArray]
 """Maps places (n, n_coordinates) to what they ask for (n,): inf where nothing is enough, -inf where
@@ -35,14 +123,14 @@ _APART = 0.025
 """Between starts about the end of a climb, as a share of the space."""
 _CLOSE = 0.01
 """Relative: how far an end may stay below the best to be one of the highest."""
-_MOST_TURNS = 200
+_MAX_ITERATIONS = 200
 """A demand that grows in ever smaller steps, as at the edge of what can be held, has no end."""
 _SHRINKS = 0.4
 """Of a cloud where nothing rises."""
 _SHRINKS_AT_CORNER = 0.1
-"""Of a cloud about a landmark of the space where nothing rises; a turn tries a factor of 30."""
+"""Of a cloud about a landmark of the space where nothing rises; each spans a factor of 30."""
 _CLOUDS = 3
-"""Tried in one turn, each smaller by as much as where nothing rises, once climbs go to the end."""
+"""Tried in an iteration, each smaller by as much as where nothing rises, once climbs end."""
 _STEEP = 30.0
 """How many times wider a gap is than the demands above it differ, where they jump."""
 _NEAR_SCALES = 10.0 ** -np.arange(1.0, 8.0)
@@ -73,7 +161,9 @@ class Effort:
     revisited: int = 3  # The highest ends, about which starts closer together are tried
     beside: int = 4  # Such starts about each of them at most
     tried_beside: int = 128  # Places of which they are the largest
-    trials: int = 4  # Random places a coordinate tried about each in a turn, beside those along it
+    trials: int = (
+        4  # Random places a coordinate tried about each in an iteration, beside those along it
+    )
     # Whether each landmark is a start, rather than only those that nothing near them exceeds
     from_landmarks: bool = True
     tolerance: float = 1e-9  # Size of the last cloud, as a share of the space
@@ -130,19 +220,19 @@ def refine_each(
         return []
     if effort is not None or len(starts) <= _MANY:
         return _PoseSearch(space, demand, effort or Effort(), len(starts)).run(starts)
-    every = np.arange(len(starts))
-    scouts = every[:: -(-len(every) // _SCOUTS)]
-    followers = np.setdiff1d(every, scouts)
+    searches = np.arange(len(starts))
+    scouts = searches[:: -(-len(searches) // _SCOUTS)]
+    followers = np.setdiff1d(searches, scouts)
 
-    def among(numbers: IntArray, effort: Effort, known: FloatArray) -> dict[int, list[Worst]]:
-        own_starts = [np.concatenate([starts[k], known]) for k in numbers]
+    def among(numbers: IntArray, effort: Effort, extra: FloatArray) -> dict[int, list[Worst]]:
+        places = [np.concatenate([starts[k], extra]) for k in numbers]
         search = _PoseSearch(space, lambda at, k: demand(at, numbers[k]), effort, len(numbers))
-        return dict(zip(numbers.tolist(), search.run(own_starts), strict=True))
+        return dict(zip(numbers.tolist(), search.run(places), strict=True))
 
     worsts = among(scouts, Effort(), np.empty((0, space.n_coordinates)))
     ends = np.concatenate([places_of(of_search) for of_search in worsts.values()])
     worsts |= among(followers, _FOLLOWING, ends)
-    return [worsts[k] for k in every.tolist()]
+    return [worsts[k] for k in searches.tolist()]
 
 
 def places_of(worsts: Iterable[Worst]) -> FloatArray:
@@ -207,31 +297,33 @@ class _PoseSearch:
         self._phase = 0
 
     def run(self, starts: Sequence[FloatArray]) -> list[list[Worst]]:
-        space, every = self._space, np.arange(self._count)
+        space, active = self._space, np.arange(self._count)
         if space.is_discrete:
             points = np.concatenate(list(map(space.places, space.region.samples_m(1, "grid", 0))))
-            self._ask_each([points] * self._count, every)
+            self._ask_each([points] * self._count, active)
             return self._worsts
         marks, common = self._marks, np.concatenate([self._marks, self._scatter(0)])
         places = [np.concatenate([of_search, common]) for of_search in starts]
-        values = self._ask_each(places, every)
+        values = self._ask_each(places, active)
         landmarks = [len(of_search) + np.arange(len(marks)) for of_search in starts]
-        self._climb_all(every, places, values, landmarks)
-        for turn in range(1, self._effort.rounds + 1):
-            every = every[~self._is_over[every]]
-            before = self._best[every]
-            scatter, near = self._scatter(turn), self._near_the_best(turn, every)
+        self._climb_all(active, places, values, landmarks)
+        for iteration in range(1, self._effort.rounds + 1):
+            active = active[~self._is_over[active]]
+            before = self._best[active]
+            scatter, near = self._scatter(iteration), self._near_the_best(iteration, active)
             places = [np.concatenate([scatter, of_search]) for of_search in near]
-            values = self._ask_each(places, every) if len(every) else []
+            values = self._ask_each(places, active) if len(active) else []
             threshold = before + np.where(np.isneginf(before), 0.0, 1e-10 * np.abs(before))
             higher = [of_search > least for of_search, least in zip(values, threshold, strict=True)]
-            is_over = self._is_over[every]
+            is_over = self._is_over[active]
             rising = [k for k, mask in enumerate(higher) if mask.any() and not is_over[k]]
             if not rising:
                 break
-            every, none = every[rising], np.empty(0, dtype=np.int64)
+            active, no_landmarks = active[rising], np.empty(0, dtype=np.int64)
             values = [np.where(higher[k], values[k], -np.inf) for k in rising]
-            self._climb_all(every, [places[k] for k in rising], values, [none] * len(rising))
+            self._climb_all(
+                active, [places[k] for k in rising], values, [no_landmarks] * len(rising)
+            )
         return self._worsts
 
     @property
@@ -245,20 +337,21 @@ class _PoseSearch:
     def _is_over(self) -> BoolArray:
         return np.asarray(np.isposinf(self._best).any(axis=1))
 
-    def _scatter(self, turn: int) -> FloatArray:
+    def _scatter(self, iteration: int) -> FloatArray:
         counts = self._effort.per_edge, self._effort.per_face, self._effort.inside
-        return self._space.scattered(np.random.default_rng([0, turn]), *counts)
+        return self._space.scattered(np.random.default_rng([0, iteration]), *counts)
 
-    def _near_the_best(self, turn: int, among: IntArray) -> list[FloatArray]:
+    def _near_the_best(self, iteration: int, among: IntArray) -> list[FloatArray]:
         """Return places about each of the best of some searches, at all distances."""
         n = len(self._size)
-        cloud = np.random.default_rng([1, turn]).uniform(-1.0, 1.0, (len(_NEAR_SCALES), 24, n))
+        rng = np.random.default_rng([1, iteration])
+        cloud = rng.uniform(-1.0, 1.0, (len(_NEAR_SCALES), 24, n))
         cloud = (cloud * _NEAR_SCALES[:, None, None] * self._size).reshape(-1, n)
-        near = []
+        clouds = []
         for best in self._best_places[among]:
-            known = best[np.isfinite(best).all(axis=1)]
-            near.append(self._space.nearest((known[:, None] + cloud).reshape(-1, n)))
-        return near
+            places = best[np.isfinite(best).all(axis=1)]
+            clouds.append(self._space.nearest((places[:, None] + cloud).reshape(-1, n)))
+        return clouds
 
     def _ask_each(self, places: Sequence[FloatArray], among: IntArray) -> list[FloatArray]:
         """Return what places (n, n_coordinates) of some searches ask for (n, n_extremes)."""
@@ -296,14 +389,14 @@ class _PoseSearch:
         is_over = self._is_over
         for k, of_search, demand, marks in zip(among, places, values, landmarks, strict=True):
             for extreme in range(0 if is_over[k] else demand.shape[1]):
-                own_demand = demand[:, extreme]
-                rows = local_maxima(self._space, of_search, own_demand, effort.starts)
+                values_of_extreme = demand[:, extreme]
+                rows = local_maxima(self._space, of_search, values_of_extreme, effort.starts)
                 if effort.from_landmarks and demand.shape[1] == 1:
-                    highest = marks[np.argsort(-own_demand[marks])][: effort.starts]
-                    rows = np.union1d(rows, highest[~np.isneginf(own_demand[highest])])
+                    highest = marks[np.argsort(-values_of_extreme[marks])][: effort.starts]
+                    rows = np.union1d(rows, highest[~np.isneginf(values_of_extreme[highest])])
                 kinds.append(np.full((len(rows), 2), (k, extreme)))
                 starts.append(of_search[rows])
-                demands.append(own_demand[rows])
+                demands.append(values_of_extreme[rows])
         if not kinds:
             return
         search, extreme = np.concatenate(kinds).T
@@ -327,7 +420,7 @@ class _PoseSearch:
         if not len(ends):
             return ends
         reach = 1.5 / CELLS_A_SIDE
-        offsets = self._rng(_MOST_TURNS).uniform(-reach, reach, (effort.tried_beside, n))
+        offsets = self._rng(_MAX_ITERATIONS).uniform(-reach, reach, (effort.tried_beside, n))
         places = self._space.nearest(ends.at[:, None] + offsets * self._size)
         demand = self._ask_about(ends, places)
         rows, chosen = np.arange(len(ends)), []
@@ -388,15 +481,15 @@ class _PoseSearch:
         """
         self._phase += 1
         clouds = _CLOUDS if slides else 1
-        is_corner = self._are_marks(climbs.at)
-        for turn in range(_MOST_TURNS):
+        is_corner = (climbs.at[:, None] == self._marks).all(axis=2).any(axis=1)  # a landmark
+        for iteration in range(_MAX_ITERATIONS):
             active = np.flatnonzero((climbs.radius > tolerance) & ~self._is_over[climbs.search])
             if not len(active):
                 break
-            climb, rng = climbs.part(active), self._rng(turn)
+            climb, rng = climbs.part(active), self._rng(iteration)
             rows = np.arange(len(active))
             shrinks = np.where(is_corner[active], _SHRINKS_AT_CORNER, _SHRINKS)
-            # Smaller clouds are tried with the first: where it has nothing, a turn is spared.
+            # Smaller clouds are tried with the first: where it has nothing, an iteration is spared.
             radii = climb.radius[:, None] * shrinks[:, None] ** np.arange(clouds)
             directions = self._directions(rng, clouds)
             offsets = radii[..., None, None] * (directions * self._size)
@@ -427,15 +520,11 @@ class _PoseSearch:
             grown = 1.1 * radii[rows, (in_cloud > climb.value[:, None]).argmax(axis=1)]
             climbs.radius[active] = np.where(better, grown, radii[:, -1] * shrinks)
 
-    def _are_marks(self, at: FloatArray) -> BoolArray:
-        """Tell which places are landmarks of the space, such as its corners."""
-        return np.asarray((at[:, None] == self._marks).all(axis=2).any(axis=1))
-
     def _ask_about(self, climbs: Climbs, places: FloatArray) -> FloatArray:
         """Return each climb's own demand (n_climbs, …) at places (n_climbs, …, n_coordinates)."""
         rows = np.column_stack([climbs.search, places.reshape(len(climbs), -1)])
         # Climbs of several extremes that stand at the same place try the same places.
-        _, first, each = np.unique(
+        _, first, owner = np.unique(
             rows.view(f"V{rows[0].nbytes}").ravel(), return_index=True, return_inverse=True
         )
         distinct = np.sort(first)
@@ -443,8 +532,8 @@ class _PoseSearch:
         search = np.repeat(climbs.search[distinct], flat.shape[1])
         demand = self._ask(flat.reshape(-1, len(self._size)), search)
         demand = demand.reshape(*flat.shape[:2], -1)
-        own = demand[np.searchsorted(distinct, first[each]), :, climbs.extreme]
-        return own.reshape(places.shape[:-1])
+        values = demand[np.searchsorted(distinct, first[owner]), :, climbs.extreme]
+        return values.reshape(places.shape[:-1])
 
     def _slide(
         self,
@@ -470,8 +559,8 @@ class _PoseSearch:
         normal = np.where(outside, 0.0, offsets).sum(axis=1) / (~outside).sum(axis=1)
         normal -= np.where(outside, offsets, 0.0).sum(axis=1) / outside.sum(axis=1)
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-        some = offsets[:, rng.permutation(offsets.shape[1])[:10]]  # ten slides are tried
-        across = some - np.einsum("rtk,rk->rt", some, normal)[..., None] * normal[:, None]
+        sampled = offsets[:, rng.permutation(offsets.shape[1])[:10]]  # ten slides are tried
+        across = sampled - np.einsum("rtk,rk->rt", sampled, normal)[..., None] * normal[:, None]
         low, part = np.full((*across.shape[:2], 1), -1.0), 2.0
 
         def at(share: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -490,14 +579,14 @@ class _PoseSearch:
         rows = np.arange(len(places))
         return places[rows, highest], demand[rows, highest]
 
-    def _rng(self, turn: int) -> np.random.Generator:
-        """Return the same random numbers for all searches, new ones in each turn."""
-        return np.random.default_rng([2, self._phase, turn])
+    def _rng(self, iteration: int) -> np.random.Generator:
+        """Return the same random numbers for all searches, new ones in each iteration."""
+        return np.random.default_rng([2, self._phase, iteration])
 
     def _directions(self, rng: np.random.Generator, clouds: int) -> FloatArray:
         """Return directions (n_clouds, n_trials, n_coordinates) along the axes, and random ones.
 
-        Random lengths span a factor of 30, so that one turn tries several scales.
+        Random lengths span a factor of 30, so that one iteration tries several scales.
         """
         free = self._size > 0.0
         n = int(free.sum())

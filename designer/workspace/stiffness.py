@@ -24,33 +24,22 @@ MOST_SAMPLES, FEW_SAMPLES = 2000, 500
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StiffnessSurvey:
-    """Displacement under a unit force over a workspace, cables of fixed length.
+    """Displacement under a unit force over a workspace, cables of fixed length."""
 
-    Parameters
-    ----------
-    samples : int
-        Poses that were looked at before the search between them, solved and not left out.
-    unstable : int
-        Those of them in which the platform would not stay.
-    softest_m_per_N, stiffest_m_per_N : float
-        Largest displacement under a unit force in its worst direction, and the smallest of the
-        samples [m/N]; the former inf where the platform would not stay somewhere.
-    softest_place, stiffest_place : array (n_coordinates,)
-        Where [m, rad].
-    lowest_frequency_Hz : float or None
-        Least natural frequency at which the platform takes part, see `designer.statics.modes`; None
-        where its inertia is not known [Hz].
-    lowest_frequency_place : array (n_coordinates,) or None
-        Where [m, rad].
-    """
-
+    #: poses that were looked at before the search between them, solved and not left out
     samples: int
-    unstable: int
+    unstable: int  #: those of them in which the platform would not stay
+    #: largest displacement under a unit force in its worst direction [m/N]; inf where the platform
+    #: would not stay somewhere
     softest_m_per_N: float = field(metadata={"json": "largest_displacement_m_per_N"})
-    stiffest_m_per_N: float = field(metadata={"json": None})
+    stiffest_m_per_N: float = field(metadata={"json": None})  #: smallest of the samples [m/N]
+    #: (n_coordinates,) where [m, rad], as the next
     softest_place: FloatArray = field(metadata={"json": named_position})
     stiffest_place: FloatArray = field(metadata={"json": None})
+    #: least natural frequency at which the platform takes part, see `designer.statics.modes`; None
+    #: where its inertia is not known [Hz]
     lowest_frequency_Hz: float | None = None
+    #: (n_coordinates,) where [m, rad]
     lowest_frequency_place: FloatArray | None = field(
         default=None,
         metadata={"json": lambda at: {"lowest_frequency_pose": None if at is None else at[:3]}},

@@ -19,7 +19,7 @@ from designer.model.requirement import State
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
 from designer.report.render import rendered
-from designer.statics.reactions import platform_branch_N
+from designer.statics.inverse import platform_branch_N
 
 UP = np.array([0.0, 0.0, 1.0])
 G = 9.81

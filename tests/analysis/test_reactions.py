@@ -34,8 +34,7 @@ from designer.report.render import rendered
 from designer.resources import example_file
 from designer.selection.criteria import criteria_of
 from designer.selection.requirements import CaseLoads, evaluate
-from designer.statics.inverse import solve_sagging
-from designer.statics.reactions import platform_branch_N
+from designer.statics.inverse import platform_branch_N, solve_sagging
 from designer.workspace.demand import settled
 
 Study = dict[str, Any]

@@ -35,8 +35,7 @@ from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.sizing.newton import size_poses
 from designer.sizing.scp import size_by_scp
-from designer.statics.distribution import distribute_evenly
-from designer.statics.inverse import solve_sagging
+from designer.statics.inverse import distribute_evenly, solve_sagging
 from designer.workspace.sweep import map_workspace
 
 REGION = Prism.box((-4.0, 4.0), (-3.0, 3.0), (0.3, 3.0))

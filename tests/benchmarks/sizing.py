@@ -41,8 +41,7 @@ from designer.sizing.newton import size_poses
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import solve_massless, solve_sagging
 from designer.workspace import sweep
-from designer.workspace.store import sweep_file
-from designer.workspace.sweep import map_workspace
+from designer.workspace.sweep import map_workspace, sweep_file
 
 STEEL = Material(7800.0, 200e9, 180e6)
 FAST = Robot(frozen_array([[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]), Platform(4000.0))

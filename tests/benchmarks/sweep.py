@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-from designer.sweeps.store import read_store
+from designer.sweeps.run import read_store
 
 _STUDY = """\
 robot:

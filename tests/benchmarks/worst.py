@@ -34,9 +34,8 @@ from designer.resources import example_file, example_names
 from designer.selection.verify import verify
 from designer.statics.inverse import solve_sagging
 from designer.study import Study
-from designer.workspace.clearance import smallest_clearance
+from designer.workspace.clearance import smallest_clearance, survey
 from designer.workspace.demand import diameter_demand, is_left_out, massless_demand, rope_demand
-from designer.workspace.interference import survey
 from designer.workspace.refine import Demand
 from designer.workspace.stiffness import displacement_demand, survey_stiffness
 from designer.workspace.sweep import map_workspace

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 import pyvista
 
-from designer.exports.glb import Surface, glb
-from designer.exports.gltf import to_gltf
+from designer.exports.gltf import Surface, glb, to_gltf
 from designer.exports.robot import ExportedRobot
 from designer.io.config import read_study
 

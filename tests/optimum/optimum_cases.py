@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from designer.optimum.optimise import optimum_of
+from designer.optimum.optimise import Optimum, optimum_of
 from designer.optimum.plan import OptimisationPlan, read_optimisation
-from designer.optimum.result import Optimum
 
 STUDY = """# a small crane
 robot:

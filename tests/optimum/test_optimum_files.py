@@ -16,7 +16,7 @@ import designer
 from designer.analysis.comparison import ComparisonLine
 from designer.cli.commands import main
 from designer.errors import DesignerError
-from designer.optimum.result import Optimum
+from designer.optimum.optimise import Optimum
 from designer.report.optimum import headline, optimum_report, trust_lines, write_optimum
 
 

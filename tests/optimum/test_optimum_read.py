@@ -9,8 +9,7 @@ from optimum_cases import OF_POSE, OF_YARD, STUDY, YARD, plan_of, written
 
 from designer.errors import InputError
 from designer.optimum.optimise import optimised_text
-from designer.optimum.plan import read_optimisation
-from designer.optimum.variables import demand_sense
+from designer.optimum.plan import demand_sense, read_optimisation
 from designer.resources import example_file, example_names
 
 WINDY = YARD.replace("galvanised]", "galvanised], safety_factor: 5")

@@ -23,8 +23,7 @@ from designer.diagnosis.check import check
 from designer.documents.document import read_document
 from designer.measured.read import read_measured
 from designer.model.robot import Poses
-from designer.sweeps.plan import Range
-from designer.sweeps.point import Base, solve_points
+from designer.sweeps.plan import Base, Range, solve_points
 
 HEAVIER = 1.05
 ROWS = 24

@@ -18,11 +18,18 @@ from designer.model.robot import Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.physics import catenary
 from designer.proof import encloser as encloser_module
-from designer.proof.cover import covers_of
-from designer.proof.encloser import Encloser
-from designer.proof.enclosure.box import _bend, _place, _prepare, _slopes
-from designer.proof.enclosure.tables import T_P, T, new_work
-from designer.proof.enclosure.tension import _lowest_slope, along
+from designer.proof.encloser import Encloser, covers_of
+from designer.proof.enclosure.box import (
+    T_P,
+    T,
+    _bend,
+    _lowest_slope,
+    _place,
+    _prepare,
+    _slopes,
+    along,
+    new_work,
+)
 
 pytestmark = pytest.mark.slow  # compiles a kernel that other quick tests do without
 

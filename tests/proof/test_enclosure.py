@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from flint import arb, ctx
 
-from designer.proof.enclosure.cable import enclose, sag
+from designer.proof.enclosure.cable import bound_sag, enclose, sag
 from designer.proof.enclosure.interval import add, divide, down, multiply, root, subtract, up
-from designer.proof.enclosure.sag import bound_sag
 
 pytestmark = pytest.mark.slow  # compiles for some ten seconds
 

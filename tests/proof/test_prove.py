@@ -15,8 +15,7 @@ from designer.model.prism import Prism
 from designer.model.rectangle import Rectangle
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations, Space
-from designer.proof.cover import covers_of
-from designer.proof.encloser import Encloser
+from designer.proof.encloser import Encloser, covers_of
 from designer.proof.prove import Budget, _BranchAndBound, prove
 from designer.proof.servable import servable
 from designer.statics.inverse import solve_sagging

@@ -16,8 +16,7 @@ from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.proof.ahead import compile_apart, compile_here
-from designer.proof.cover import covers_of
-from designer.proof.encloser import Encloser
+from designer.proof.encloser import Encloser, covers_of
 from designer.proof.enclosure.box import bound_range
 from designer.proof.prove import Budget, prove
 from designer.statics.inverse import solve_sagging

@@ -8,10 +8,16 @@ from dataclasses import replace
 import pytest
 
 from designer.cli.commands import main
-from designer.reference import machines
-from designer.reference.case import Figure, ReferenceCase, as_printed
-from designer.reference.page import CASES, ROBOTS, compute, markdown
-from designer.reference.single_cables import LINES, WRONG_IN_MOORPY
+from designer.reference.cases import (
+    CASES,
+    LINES,
+    MACHINES,
+    WRONG_IN_MOORPY,
+    Figure,
+    ReferenceCase,
+    as_printed,
+)
+from designer.reference.page import ROBOTS, compute, markdown
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.title)
@@ -27,7 +33,7 @@ def test_every_figure_is_as_near_as_its_source_allows(case: ReferenceCase) -> No
             assert abs(one.difference) > 1e-2
         else:
             assert one.tolerance is not None
-            assert one.tolerance <= (0.3 if case in machines.CASES else 1e-2)
+            assert one.tolerance <= (0.3 if case in MACHINES else 1e-2)
 
 
 def test_limits_are_held_from_below() -> None:

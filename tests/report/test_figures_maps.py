@@ -25,7 +25,7 @@ from designer.report.figures.canvas import names_of
 from designer.report.figures.colours import DIAMETER, RATIO, TENSION, tension_of
 from designer.resources import example_file
 from designer.sizing.newton import limit_ratio, size_poses
-from designer.statics.shape import sag_m
+from designer.statics.inverse import sag_m
 from designer.study import DeclaredEffect
 
 pytestmark = pytest.mark.slow

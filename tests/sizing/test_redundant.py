@@ -28,10 +28,8 @@ from designer.sizing.loop import size_by_loop
 from designer.sizing.newton import Sizing, limit_ratio, size_poses
 from designer.sizing.nlp import size_by_nlp
 from designer.sizing.scp import _Problem, size_by_scp
-from designer.statics.distribution import distribute_evenly
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
-from designer.statics.inverse import solve_sagging
-from designer.statics.shape import sag_ratio
+from designer.statics.inverse import distribute_evenly, sag_ratio, solve_sagging
 
 WEIGHTS = (1.0, 30.0, 60.0)
 CASES = {

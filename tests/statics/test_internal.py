@@ -12,10 +12,9 @@ from designer.model.cable import Cable
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
 from designer.physics import catenary
+from designer.statics.balance import InternalBalance, solve_taut
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
-from designer.statics.internal import InternalBalance
 from designer.statics.inverse import Statics
-from designer.statics.taut import solve_taut
 
 pytestmark = pytest.mark.slow  # compiles a kernel that other quick tests do without
 

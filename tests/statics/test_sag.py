@@ -21,8 +21,7 @@ from designer.physics import catenary
 from designer.sizing.newton import size_poses
 from designer.sizing.scp import size_by_scp
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
-from designer.statics.inverse import solve_sagging
-from designer.statics.shape import sag_ratio
+from designer.statics.inverse import sag_ratio, solve_sagging
 from designer.statics.sizes import meet
 
 

@@ -14,8 +14,7 @@ from designer.arrays import FloatArray
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.robot import Platform, Poses, Robot
 from designer.statics.geometry import load_wrench_N
-from designer.statics.inverse import solve_sagging
-from designer.statics.shape import sag_ratio
+from designer.statics.inverse import sag_ratio, solve_sagging
 from designer.statics.slopes import Slopes, utilisation_slopes
 
 _STEP = 1e-5

@@ -12,9 +12,9 @@ from designer.kernel.unit_cable import PULL_FLOOR
 from designer.model.cable import Cable
 from designer.model.robot import Platform, Poses, Robot
 from designer.physics import catenary
+from designer.statics.balance import solve_taut
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.pulleys import straight_run
-from designer.statics.taut import solve_taut
 
 REGULAR = 1e-4
 LEAST = 1e-3

@@ -17,8 +17,8 @@ from designer.model.cable import Cable
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
 from designer.physics import catenary
+from designer.statics.balance import imbalance, solve_underactuated
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
-from designer.statics.underactuated import imbalance, solve_underactuated
 
 pytestmark = pytest.mark.slow  # compiles a kernel that other quick tests do without
 

@@ -16,8 +16,7 @@ import pytest
 from sweep_cases import SWEEP, written
 
 from designer.sweeps.plan import read_sweep
-from designer.sweeps.run import run
-from designer.sweeps.store import opened
+from designer.sweeps.run import opened, run
 
 pytestmark = [
     pytest.mark.slow,

@@ -15,7 +15,7 @@ from test_sweep_run import swept
 
 from designer.report.document import Report
 from designer.report.sweep import NOT_EVALUATED, pareto_front, sweep_report
-from designer.sweeps.store import read_store
+from designer.sweeps.run import read_store
 
 
 def page_of(

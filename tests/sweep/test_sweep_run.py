@@ -25,11 +25,8 @@ from designer.cli.commands import main
 from designer.documents.document import read_document
 from designer.errors import InputError, OutputError
 from designer.sweeps import run as running
-from designer.sweeps import store as stores
-from designer.sweeps.plan import SweepPlan, read_sweep
-from designer.sweeps.point import Base, value_at, why_negative
-from designer.sweeps.run import run
-from designer.sweeps.store import Store, opened, read_store
+from designer.sweeps.plan import Base, SweepPlan, read_sweep, value_at, why_negative
+from designer.sweeps.run import Store, opened, read_store, run
 
 REGION = """workspace: {region: {prism: anchors, inset: 2 m, z: [1, 7]}, samples: 50}
 selection: {}
@@ -356,7 +353,9 @@ def test_a_cluster_that_goes_away_is_told(tmp_path: Path) -> None:
 
 
 def test_a_large_sweep_has_few_chunks() -> None:
-    chunks = {n: max(1, min(stores._LARGEST_CHUNK, n // stores._CHUNKS)) for n in (9, 10**4, 10**5)}
+    chunks = {
+        n: max(1, min(running._LARGEST_CHUNK, n // running._CHUNKS)) for n in (9, 10**4, 10**5)
+    }
     assert chunks == {9: 1, 10**4: 5, 10**5: 50}
 
 

@@ -20,8 +20,7 @@ from designer.selection.verify import verify
 from designer.sizing.newton import size_poses
 from designer.workspace.demand import diameter_demand
 from designer.workspace.refine import refine
-from designer.workspace.store import open_sweep
-from designer.workspace.sweep import map_workspace
+from designer.workspace.sweep import map_workspace, open_sweep
 
 BOX = Prism.box((-10.0, 10.0), (-10.0, 10.0), (-90.0, -70.0))
 TILTS = frozen_array([[0.0, 0, 0], [0.03, 0, 0], [0, -0.02, 0.05]])

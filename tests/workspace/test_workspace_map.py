@@ -1,24 +1,41 @@
-"""Samples, sweep, refinement and store, on the paper's robot and on made-up demands."""
+"""Samples, sweep, refinement and store; straight cables, cables that hang far, no poses at all."""
 
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from report_parts import paragraphs
 
+from designer.analysis.analyse import analyse
 from designer.arrays import frozen_array
+from designer.cli.tables import summary_rows
+from designer.io.config import read_study
+from designer.model.cable import Material
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.region import CHUNK
-from designer.model.robot import Poses
+from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.model.workspace import Workspace
+from designer.report.design.drawings import Drawings
+from designer.report.design.report import section
+from designer.resources import example_file, example_names
 from designer.sizing.newton import size_poses
-from designer.workspace.pool import Pool
-from designer.workspace.refine import Worst, refine, refine_each
-from designer.workspace.store import open_sweep
-from designer.workspace.sweep import map_workspace
+from designer.statics.inverse import solve_massless, solve_sagging
+from designer.statics.task import LONG
+from designer.study import Study
+from designer.workspace.demand import diameter_demand, is_left_out, massless_demand, rope_demand
+from designer.workspace.refine import Pool, Worst, refine, refine_each
+from designer.workspace.sweep import (
+    HangingCables,
+    look_at,
+    map_workspace,
+    open_sweep,
+    survey_hanging,
+)
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 
@@ -384,3 +401,176 @@ def test_every_point_of_a_list_is_tried_for_every_extreme() -> None:
 
     found = [one.demand for one in refine(space, demand, points[:1])]
     assert found == pytest.approx([*points.max(axis=0), *-points.min(axis=0)])
+
+
+@pytest.mark.parametrize("name", example_names())
+def test_no_poses_are_answered_by_none(name: str) -> None:
+    study = read_study(example_file(name))
+    robot, cable, none = study.robot, study.material.cable(5e-3), Poses.at(np.empty((0, 3)))
+    assert solve_massless(robot, none).tension_N.shape == (0, robot.n_cables)
+    assert solve_sagging(robot, none, cable).length_m.shape == (0, robot.n_cables)
+    assert size_poses(robot, none, study.material).diameter_m.shape == (0,)
+    assert study.workspace is not None
+    places = np.empty((0, study.workspace.space.n_coordinates))
+    assert diameter_demand(robot, study.material, "include", places).shape == (0,)
+    for hangs_below in ("include", "exclude"):
+        assert massless_demand(robot, study.material, hangs_below, places).shape == (0,)
+    assert rope_demand(robot, cable, "exclude", places).shape == (0, 1 + 2 * robot.n_cables)
+
+
+def ipanema(region: Prism) -> Study:
+    """IPAnema, where each cable keeps 30 N and the platform is turned a little."""
+    study = read_study(example_file("ipanema"))
+    turn = frozen_array([[0.04, -0.056, 0.073]])
+    workspace = Workspace(region, samples=500, orientations=Orientations(turn))
+    return replace(study, workspace=workspace, pose=None, selection=None)
+
+
+INSIDE = Prism.box((-0.4, 0.2), (-0.2, 0.2), (0.4, 0.8))
+ACROSS = Prism.box((-0.918, -0.159), (-0.382, 0.664), (1.018, 1.24))
+
+
+def test_toward_a_pose_that_straight_cables_do_not_hold_their_tension_has_no_bound() -> None:
+    study = ipanema(ACROSS)
+    assert study.workspace is not None
+    places = next(iter(study.workspace.places()))
+
+    def tension(place: np.ndarray) -> float:
+        return float(solve_massless(study.robot, Poses.at(place)).largest_tension_N)
+
+    held = [place for place in places if np.isfinite(tension(place))]
+    inside, outside = held[0], next(place for place in places if np.isnan(tension(place)))
+    start = tension(inside)
+    for _ in range(40):
+        middle = 0.5 * (inside + outside)
+        if np.isnan(tension(middle)):
+            outside = middle
+        else:
+            inside = middle
+    assert tension(inside) > 1e3 * start
+    assert map_workspace(study.robot, study.workspace, study.material).massless is None
+
+
+def test_where_straight_cables_hold_everything_their_worst_pose_is_told() -> None:
+    study = ipanema(INSIDE)
+    assert study.workspace is not None
+    found = map_workspace(study.robot, study.workspace, study.material).massless
+    assert found is not None
+    tensions = solve_massless(study.robot, Poses.at(next(iter(study.workspace.places()))))
+    assert found.max_tension_N >= np.max(tensions.largest_tension_N)
+    again = solve_massless(study.robot, found.pose).largest_tension_N
+    assert found.max_tension_N == pytest.approx(float(again))
+
+
+@pytest.mark.slow
+def test_it_is_of_the_poses_that_count(fast_robot, steel) -> None:
+    triangle = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
+    region = Prism.over(triangle, 0.0, (-200.0, -40.0))
+    workspace = Workspace(region, samples=2000, hangs_below="exclude")
+    found = map_workspace(fast_robot, workspace, steel).massless
+    assert found is not None
+    sizing = size_poses(fast_robot, found.pose, steel)
+    assert not is_left_out(sizing.statics, "exclude")
+    places = next(iter(workspace.places()))
+    sizing = size_poses(fast_robot, Poses.at(places), steel)
+    counts = ~is_left_out(sizing.statics, "exclude")
+    assert np.isfinite(sizing.massless_tension_N[counts]).all()
+    assert found.max_tension_N > sizing.massless_tension_N[counts].max()
+    assert found.max_tension_N < sizing.massless_tension_N[~counts].max()
+
+
+def test_sag_may_hold_what_straight_cables_do_not() -> None:
+    study = read_study(example_file("robocrane"))
+    region = Prism.box((-0.997, 0.601), (1.143, 1.159), (-0.473, 0.964))
+    workspace = Workspace(region, samples=2000)
+    found = map_workspace(study.robot, workspace, study.material)
+    assert found.is_feasible
+    assert found.massless is None
+
+
+def test_terminal_and_report_say_that_there_is_none(tmp_path) -> None:
+    analysis = analyse(ipanema(ACROSS), folder=tmp_path)
+    said = dict(summary_rows(analysis))
+    assert said["  massless"] == "none: straight cables do not hold every pose"
+    page = section(Drawings(analysis, draws=False, missing="pictures"), "workspace")
+    start = "Straight weightless cables do not hold every"
+    assert any(text.startswith(start) for text in paragraphs(page))
+
+
+STEEL = Material(7800.0, 200e9, 180e6)
+MAST = frozen_array([[0, 0, 0], [100, 0, 0], [100, 80, 0], [0, 80, 0]])
+ROBOT = Robot(MAST, Platform(400.0), sag_max=0.5)
+REGION = Prism.box((10.0, 90.0), (10.0, 70.0), (-40.0, -10.0))
+ROPE = STEEL.cable(0.012)
+
+
+def drawn_z_m(statics, robot) -> np.ndarray:
+    """Heights along every cable, by adding up short straight pieces from the exit point."""
+    steps = 4000
+    w, EA = statics.weight_N_per_m[..., None], statics.axial_stiffness_N[..., None]
+    s = (np.arange(steps) + 0.5) / steps * statics.length_m[..., None]
+    upward = statics.force_z_N[..., None] + w * (s - statics.length_m[..., None])
+    tension = np.hypot(statics.force_x_N[..., None], upward)
+    piece = upward / tension * (1.0 + tension / EA) * statics.length_m[..., None] / steps
+    return robot.exit_points_m[:, 2, None] + np.cumsum(piece, axis=-1)
+
+
+def some_statics(cable=ROPE):
+    rng = np.random.default_rng(4)
+    low, high = REGION.bounds_m
+    return solve_sagging(ROBOT, Poses.at(rng.uniform(low, high, (200, 3))), cable)
+
+
+def test_the_lowest_point_is_that_of_the_drawn_cable() -> None:
+    statics = some_statics(STEEL.cable(0.02))
+    assert statics.is_solved.all()
+    assert statics.hangs_below.any() and not statics.hanging_cables.all()
+    drawn = np.minimum(drawn_z_m(statics, ROBOT).min(axis=-1), 0.0)
+    assert np.abs(statics.lowest_m - drawn).max() < 0.05
+    assert np.all(statics.lowest_m <= statics.poses.position_m[:, None, 2] + 1e-9)
+
+
+def test_samples_are_counted_and_the_worst_is_told() -> None:
+    statics = some_statics(STEEL.cable(0.03))
+    places = statics.poses.position_m
+    ratio, lowest = statics.length_over_chord, statics.lowest_m
+    floor_m = float(np.median(lowest.min(axis=1)))
+    counts = statics.is_solved & (np.arange(200) % 3 > 0)
+    whole = look_at(HangingCables(), places, statics, counts, floor_m)
+    assert whole.samples == counts.sum()
+    assert whole.below_floor is not None
+    below = lowest[counts].min(axis=1)
+    assert whole.below_floor.samples == (below < floor_m).sum()
+    assert whole.below_floor.extreme == below.min()
+    at = int(np.flatnonzero((places == whole.below_floor.place).all(axis=1))[0])
+    assert lowest[at, whole.below_floor.cable - 1] == below.min()
+    assert (whole.long is not None) == (ratio[counts] > LONG).any()
+    assert look_at(HangingCables(), places, statics, counts, None).below_floor is None
+
+
+@pytest.mark.parametrize("samples", [300])
+def test_a_sweep_counts_them(samples) -> None:
+    workspace = Workspace(REGION, samples=samples, floor_m=-45.0)
+    light = map_workspace(ROBOT, workspace, STEEL).census.hanging
+    assert light.samples == samples
+    with_heavy = survey_hanging(ROBOT, workspace, STEEL.cable(0.03))
+    assert with_heavy.below_floor is not None
+    assert with_heavy.below_floor.extreme < -45.0
+    assert [heading for heading, _ in with_heavy.notes()][-1] == "below floor"
+    none = survey_hanging(ROBOT, replace(workspace, floor_m=None), STEEL.cable(0.003))
+    assert [*none.notes()] == []
+
+
+def test_a_cable_is_not_left_to_hang_far_down_where_that_saves_nothing() -> None:
+    """Of a hall of 60 m by 40 m; held or not, the needed diameter is the same to 0.05 %."""
+    corners = [(x, y) for x in (-1, 1) for y in (-1, 1)]
+    exits = [p for x, y in corners for p in ([30 * x, 19 * y, 25], [29 * x, 20 * y, 25])]
+    body = [p for x, y in corners for p in ([x, -y, 1], [-x, y, -1])]
+    robot = Robot(frozen_array(exits), Platform(500.0, frozen_array(body)))
+    rope = Material(5290.0, 62.7e9, 198e6)
+    places = [[17.53754872083664, 10.275146467611194, 4.830685159191489], [-21.55, 10.84, 3.36]]
+    sizing = size_poses(robot, Poses.at(places), rope)
+    held = size_poses(replace(robot, tension_min_N=0.5), Poses.at(places), rope)
+    assert sizing.statics.is_solved.all()
+    assert sizing.statics.length_over_chord.max() < LONG
+    assert sizing.diameter_m == pytest.approx(held.diameter_m, rel=5e-4)

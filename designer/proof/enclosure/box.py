@@ -28,64 +28,471 @@ parameters. That it is stable, or the only one, is not claimed.
 Its tensions have slopes of the same kind; since both residual and slopes' widths shrink with the
 box, what this adds to the tension shrinks with the square of it. The linear part is taken at the
 corners of what of the box lies in the region.
+
+For a point mass on three cables there is one unknown, and bounds from corners, which hold in large
+boxes. Level forces balance by themselves where the pulls are p_i = s μ_i, with the vectors e_i from
+the platform to the exit points, seen from above, and μ_1 = e_2 × e_3, and so on in a circle: for
+any three vectors of the plane Σ μ_i e_i = 0. μ is linear in the position, so its range is that at
+the corners. What is left is one equation, with c the load over weight per length,
+
+    f(s) = Σ v(s μ_i, X_i², D_i) - c = 0.
+
+Where the exit points are above the platform, D ≥ 0, with the slopes that `cable` tells:
+
+1. v grows with p: l_p < 0, so all terms of v_p are positive.
+2. v falls with X²: both terms of v_X² are negative, as l_X² > 0.
+3. v grows with D: n ≥ 2 l + D² κ q³ A, A ≥ 1, and D q ≤ l by the closure, hence
+   q A n ≥ 2 q l + D² κ q⁴ A² ≥ 2 D q² + D² κ q⁴ = (2 + κ q² D) D q², which is v_D ≥ 0.
+4. t grows with X² and with D: κ q D q/2 ≤ κ q y < 1, since y = l A/2 ≥ D q/2.
+
+So f is bounded at corners. If f ≤ 0 at s₁ in all of a box and f ≥ 0 at s₂, it has a root between
+them in each pose, being continuous; the tensions there are those of pulls from s₁ μ to s₂ μ.
 """
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, IntArray
 from designer.kernel.compiling import inner, kernel
 from designer.kernel.linear import copy, solve_small
-from designer.proof.enclosure.cable import enclose
+from designer.kernel.unit_cable import unit_cable
+from designer.proof.enclosure.cable import bound_sag, enclose, rough_length
 from designer.proof.enclosure.interval import (
     Interval,
+    absolute,
     add,
     around,
+    down,
     middle,
     multiply,
     negate,
     point,
+    root,
     scale,
     size,
     square,
     subtract,
     up,
 )
-from designer.proof.enclosure.tables import (
-    BOUND,
-    CABLE,
-    CUT,
-    ESTIMATE,
-    EX,
-    EY,
-    EZ,
-    L_D,
-    L_P,
-    L_X2,
-    PULL,
-    RX,
-    RY,
-    RZ,
-    SPARE,
-    T_D,
-    T_P,
-    T_X2,
-    V_D,
-    V_P,
-    V_X2,
-    Boxes,
-    L,
-    Scene,
-    T,
-    V,
-    Work,
-    get,
-    new_work,
-    put,
-)
-from designer.proof.enclosure.tension import along, bound_tension, level_square, lowest
-from designer.proof.enclosure.three import bound_three, is_three
+
+# Of a cable over the box: vector to the exit point and lever, by components.
+EX, EY, EZ, RX, RY, RZ = range(6)
+# Of a cable over the box: l, v and t with their slopes in p, X² and D; then p.
+L, L_P, L_X2, L_D, V, V_P, V_X2, V_D, T, T_P, T_X2, T_D, PULL = range(13)
+# What is told of a box.
+BOUND, ESTIMATE, CUT, CABLE, SPARE = range(5)
+TOLD = 5
+"""Then, from here on, where in the box the estimate is met, one number a coordinate."""
+
+
+class Scene(NamedTuple):
+    """What is the same of all boxes: of unit weight per length, upright frame."""
+
+    rows: IntArray  #: which components of force and moment, 0 … 5, are balanced
+    kappa: float  #: weight over stiffness [1/m]
+    strength: float  #: allowable tension over weight [m]
+    least: float  #: least tension over weight [m]
+    sag: float  #: largest sag over chord; infinite for any
+    inverse_weight: float  #: 1 / weight per length [m/N]
+    reach: float  #: size of the levers, that moments are measured by; 1 for a point mass [m]
+    fuzz: float  #: bound on what rounding did to vectors and levers [m]
+    axes: FloatArray  #: (3, 3) how the position moves with each of its three coordinates
+    level: float  #: utilisation to be proved
+
+
+class Boxes(NamedTuple):
+    """Boxes of poses (n_boxes,), with three coordinates of position, then three or none of turn."""
+
+    half: FloatArray  #: (n_boxes, k) half of their sizes
+    #: (n_boxes, n_corners, 2) corners of what of the box lies in the region, first two coordinates,
+    #: from the middle
+    corners: FloatArray
+    vectors: FloatArray  #: (n_boxes, n, 3) from attachment to exit point, in the middle [m]
+    levers: FloatArray  #: (n_boxes, n, 3) from the platform's origin to the attachment there [m]
+    turns: FloatArray  #: (n_boxes, n, 3, k - 3) slopes of the levers with the turn there
+    load: FloatArray  #: (n_boxes, 6) what the cables have to pull with there [N, N·m]
+    load_turns: FloatArray  #: (n_boxes, 3, k - 3) slopes of its moment with the turn
+    #: (n_boxes, n + 1) bound on how far slopes of levers, and of the moment, from the middle are
+    #: from these
+    bent: FloatArray
+    pull: FloatArray  #: (n_boxes, n) p₀
+    follow: FloatArray  #: (n_boxes, n, k) what P should be, as far as balance lets it
+
+
+class Work(NamedTuple):
+    """Arrays of one box; the last axis of size two holds the ends of intervals."""
+
+    at: FloatArray  # (n, 6, 2)
+    start_at: FloatArray  # (n, 6, 2), the same in the middle of the box
+    mean: FloatArray  # (n, 6, 2), half the sum of both
+    slope: FloatArray  # (n, 6, k, 2), of the same, from the middle
+    cable: FloatArray  # (n, 13, 2)
+    share: FloatArray  # (n, 2), μ of a point mass on three cables
+    level: FloatArray  # (n, 6, 2), wrench of a unit pull
+    lift: FloatArray  # (n, 6, 2), wrench of a unit upward pull
+    start_level: FloatArray  # (n, 6, 2), the same in the middle of the box
+    start_lift: FloatArray  # (n, 6, 2)
+    of_x: FloatArray  # (m, k, 2), slopes of the balance
+    of_u: FloatArray  # (m, m, 2), identity less slopes
+    start: FloatArray  # (m,), size of the balance in the middle
+    P: FloatArray  # (n, k)
+    Z: FloatArray  # (n, m)
+    U: FloatArray  # (m,)
+    trial: FloatArray  # (m,)
+    G: FloatArray  # (n, m), slopes of the balance in the pulls, moments over the reach
+    weight: FloatArray  # (n,), how free the pulls are
+    start_t: FloatArray  # (n,), largest tension in the middle
+    start_low: FloatArray  # (n, 2), squares of least tension and level force there
+    tilt: FloatArray  # (k,), middles of the slopes of a tension
+    spread: FloatArray  # (k,), and how far from them the slopes may be
+    system: FloatArray  # (m, m + 1)
+    solution: FloatArray  # (m,)
+
+
+@inner
+def new_work(n: int, m: int, k: int) -> Work:
+    """Return the arrays for n cables, m balanced directions and k coordinates."""
+    return Work(
+        np.zeros((n, 6, 2)),
+        np.zeros((n, 6, 2)),
+        np.zeros((n, 6, 2)),
+        np.zeros((n, 6, k, 2)),
+        np.zeros((n, 13, 2)),
+        np.zeros((n, 2)),
+        np.zeros((n, 6, 2)),
+        np.zeros((n, 6, 2)),
+        np.zeros((n, 6, 2)),
+        np.zeros((n, 6, 2)),
+        np.zeros((m, k, 2)),
+        np.zeros((m, m, 2)),
+        np.zeros(m),
+        np.zeros((n, k)),
+        np.zeros((n, m)),
+        np.zeros(m),
+        np.zeros(m),
+        np.zeros((n, m)),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros((n, 2)),
+        np.zeros(k),
+        np.zeros(k),
+        np.zeros((m, m + 1)),
+        np.zeros(m),
+    )
+
+
+@inner
+def get(table: FloatArray) -> Interval:
+    """Return an interval (2,) of a table."""
+    return table[0], table[1]
+
+
+@inner
+def put(table: FloatArray, a: Interval) -> None:
+    """Put an interval into a table."""
+    table[0], table[1] = a
+
+
+_STEEPEST = 1e8
+"""Slope of a chord that stands for all steeper ones, which sag less."""
+
+
+@inner
+def along(work: Work, i: int, d: int, first: int) -> Interval:
+    """Return the slope of v (first = V) or t (T) of a cable in a coordinate, its pull held."""
+    s, a, row = work.slope[i, :, d], work.mean[i], work.cable[i]
+    one, two = multiply(get(s[EX]), get(a[EX])), multiply(get(s[EY]), get(a[EY]))
+    X2 = scale(add(one, two), 2.0)
+    return add(multiply(get(row[first + 2]), X2), multiply(get(row[first + 3]), get(s[EZ])))
+
+
+@inner
+def _upward(work: Work, i: int, what: int) -> Interval:
+    """Return v, or its slope, of the lower end of a cable: of the base, -l - v."""
+    row = work.cable[i]
+    v, length = get(row[V + what]), get(row[L + what])
+    return v if work.at[i, EZ, 0] >= 0.0 else negate(add(v, length))
+
+
+@inner
+def level_square(work: Work, i: int) -> Interval:
+    """Enclose the square of a cable's level force."""
+    a = work.at[i]
+    X2 = add(square(get(a[EX])), square(get(a[EY])))
+    return multiply(square(get(work.cable[i, PULL])), X2)
+
+
+@inner
+def lowest(work: Work, i: int) -> Interval:
+    """Enclose the square of the least tension anywhere in a cable.
+
+    It is at the lower end, or in the lowest point, where the force is level.
+    """
+    lift = _upward(work, i, 0)
+    return add(level_square(work, i), square((max(lift[0], 0.0), max(lift[1], 0.0))))
+
+
+@inner
+def _is_across(work: Work, i: int) -> bool:
+    """Tell whether it is not known which end of a cable is lower.
+
+    The square of the level force then stands for that of the least tension, which is no smaller.
+    """
+    return bool(work.at[i, EZ, 0] < 0.0 <= work.at[i, EZ, 1])
+
+
+@inner
+def _lowest_slope(work: Work, i: int, d: int) -> Interval:
+    """Enclose the slope of that square in a coordinate (d ≥ 0), or in its own pull (-1)."""
+    row, s, a = work.cable[i], work.slope[i, :, d], work.at[i]
+    p, dp = get(row[PULL]), point(1.0 if d < 0 else work.P[i, d])
+    X2 = add(square(get(a[EX])), square(get(a[EY])))
+    total = scale(multiply(multiply(p, X2), dp), 2.0)
+    dX2, dD = point(0.0), point(0.0)
+    if d >= 0:
+        b = work.mean[i]
+        one, two = multiply(get(s[EX]), get(b[EX])), multiply(get(s[EY]), get(b[EY]))
+        dX2, dD = scale(add(one, two), 2.0), get(s[EZ])
+        total = add(total, multiply(square(p), dX2))
+    if _is_across(work, i):
+        return total
+    lift = _upward(work, i, 0)
+    lift = scale((max(lift[0], 0.0), max(lift[1], 0.0)), 2.0)
+    change = multiply(_upward(work, i, 1), dp)
+    change = add(change, multiply(_upward(work, i, 2), dX2))
+    change = add(change, multiply(_upward(work, i, 3), dD))
+    return add(total, multiply(lift, change))
+
+
+@inner
+def _most_sag(work: Work, i: int) -> float:
+    """Bound the sag of a cable over its chord."""
+    a = work.at[i]
+    X2 = add(square(get(a[EX])), square(get(a[EY])))
+    slope = down(absolute(get(a[EZ]))[0] / root(X2)[1])
+    across, below = bound_sag(work.cable[i, PULL, 0], min(max(slope, 0.0), _STEEPEST))
+    return across if _upward(work, i, 0)[0] >= 0.0 else max(across, below)
+
+
+@inner
+def _rise(scene: Scene, boxes: Boxes, at: int, work: Work, slope_u: float, i: int) -> tuple[
+    float, float, int
+]:  # fmt: skip
+    """Return how far something grows over the box at most, at its corners, and at which of them.
+
+    Of slopes that lie `work.spread` around `work.tilt`, and `slope_u` at most in the own pull.
+    """
+    k = work.tilt.size
+    half, corners = boxes.half[at], boxes.corners[at]
+    flat, spread = 0.0, 0.0
+    for d in range(k):
+        spread = up(spread + up(work.spread[d] * half[d]))
+        if d >= 2:
+            flat = up(flat + up(abs(work.tilt[d]) * half[d]))
+    for j in range(work.U.size):
+        spread = up(spread + up(up(slope_u * abs(work.Z[i, j])) * work.U[j]))
+    best, worst_corner = -np.inf, 0
+    for c in range(corners.shape[0]):
+        a = scale(point(work.tilt[0]), corners[c, 0])
+        value = add(a, scale(point(work.tilt[1]), corners[c, 1]))[1]
+        if value > best:
+            best, worst_corner = value, c
+    rounding = up(scene.fuzz * up(abs(work.tilt[0]) + abs(work.tilt[1])))
+    at_corner = up(best + flat)
+    return up(up(at_corner + spread) + rounding), at_corner, worst_corner
+
+
+@inner
+def _set_tilt(work: Work, d: int, slope: Interval, factor: float) -> None:
+    work.tilt[d] = factor * middle(slope)
+    spread = max(slope[1] - middle(slope), middle(slope) - slope[0])
+    work.spread[d] = up(spread)
+
+
+@inner
+def bound_tension(scene: Scene, boxes: Boxes, at: int, work: Work, out: FloatArray) -> None:
+    """Set the bound and the estimate; leave the former infinite where limits are missed.
+
+    These are the least tension and the sag.
+    """
+    n, k = work.P.shape
+    worst, estimate, is_tight, spare = 0.0, -np.inf, True, np.inf
+    for i in range(n):
+        t_p = get(work.cable[i, T_P])
+        for d in range(k):
+            slope = add(scale(t_p, work.P[i, d]), along(work, i, d, T))
+            _set_tilt(work, d, slope, 1.0)
+        rise, at_corner, worst_corner = _rise(scene, boxes, at, work, size(t_p), i)
+        highest = up(work.start_t[i] + rise)
+        if not highest <= worst:
+            worst = highest
+            out[CABLE] = i
+        if work.start_t[i] + at_corner > estimate:
+            estimate = work.start_t[i] + at_corner
+            copy(boxes.corners[at, worst_corner], out[TOLD : TOLD + 2])
+            for d in range(2, k):
+                out[TOLD + d] = boxes.half[at, d] if work.tilt[d] > 0.0 else -boxes.half[at, d]
+        if scene.least > 0.0:
+            for d in range(k):
+                _set_tilt(work, d, _lowest_slope(work, i, d), -1.0)
+            fall, _at, _where = _rise(scene, boxes, at, work, size(_lowest_slope(work, i, -1)), i)
+            least = up(scene.least * scene.least)
+            start = work.start_low[i, 1 if _is_across(work, i) else 0]
+            left = down(start - fall)
+            is_tight = is_tight and left >= least
+            spare = min(spare, 0.5 * (left / least - 1.0))
+        if scene.sag < np.inf:
+            highest = _most_sag(work, i)
+            is_tight = is_tight and highest <= scene.sag
+            spare = min(spare, scene.sag / highest - 1.0)
+    out[SPARE] = spare
+    out[ESTIMATE] = estimate / scene.strength
+    if is_tight and worst < np.inf:
+        out[BOUND] = min(out[BOUND], up(worst / scene.strength))
+
+
+_STEPS = 4
+_BEYOND = 1e-6
+"""Relative: by so much a root is left behind before it is proved to lie between."""
+
+
+@inner
+def is_three(scene: Scene, boxes: Boxes, at: int) -> bool:
+    """Tell whether a box is one of a point mass on three cables that hangs from level axes."""
+    load, axes = boxes.load[at], scene.axes
+    return bool(
+        scene.rows.size == 3
+        and scene.rows[2] == 2  # not a platform in a plane
+        and boxes.pull.shape[1] == 3
+        and boxes.half.shape[1] == 3
+        and load[0] == 0.0
+        and load[1] == 0.0
+        and axes[0, 2] == 0.0
+        and axes[1, 2] == 0.0
+    )
+
+
+@inner
+def bound_three(scene: Scene, boxes: Boxes, at: int, work: Work) -> float:
+    """Return a bound on the largest tension over weight in a placed box; infinite where none."""
+    if not _set_weights(scene, boxes, at, work):
+        return math.inf
+    middle = 0.0
+    for i in range(3):
+        if not work.at[i, EZ, 0] >= 0.0:
+            return math.inf
+        middle += boxes.pull[at, i] / (0.5 * (work.share[i, 0] + work.share[i, 1])) / 3.0
+    c = scale(point(-boxes.load[at, 2]), scene.inverse_weight)
+    low, high = 0.0, middle
+    for side in (-1.0, 1.0):
+        low, high = high, _root(scene, work, c, middle, side)
+    if not (0.0 < low < high < math.inf):
+        return math.inf
+    worst = 0.0
+    for i in range(3):
+        p = (
+            multiply(point(low), get(work.share[i]))[0],
+            multiply(point(high), get(work.share[i]))[1],
+        )
+        t = _top_tension(p, _squares(work, i), get(work.at[i, EZ]), scene.kappa)
+        worst = t if not t <= worst else worst
+    return worst
+
+
+@inner
+def _set_weights(scene: Scene, boxes: Boxes, at: int, work: Work) -> bool:
+    """Set the ranges of μ; tell whether all are above zero."""
+    share, corners = work.share, boxes.corners[at]
+    for i in range(3):
+        share[i, 0], share[i, 1] = math.inf, -math.inf
+    turn = 0.0
+    for c in range(corners.shape[0]):
+        for i in range(3):
+            x, y = _vector(scene, boxes, at, (i + 1) % 3, corners[c])
+            u, w = _vector(scene, boxes, at, (i + 2) % 3, corners[c])
+            mu = subtract(multiply(x, w), multiply(y, u))
+            if turn == 0.0:
+                turn = 1.0 if mu[0] > 0.0 else -1.0
+            if turn < 0.0:
+                mu = -mu[1], -mu[0]
+            share[i, 0] = min(share[i, 0], mu[0])
+            share[i, 1] = max(share[i, 1], mu[1])
+    return bool(share[0, 0] > 0.0 and share[1, 0] > 0.0 and share[2, 0] > 0.0)
+
+
+@inner
+def _vector(
+    scene: Scene, boxes: Boxes, at: int, i: int, corner: FloatArray
+) -> tuple[Interval, Interval]:
+    """Return the level components of the vector to an exit point from a corner."""
+    e, a = boxes.vectors[at, i], scene.axes
+    x = e[0] - (a[0, 0] * corner[0] + a[0, 1] * corner[1])
+    y = e[1] - (a[1, 0] * corner[0] + a[1, 1] * corner[1])
+    return around(x, 2.0 * scene.fuzz), around(y, 2.0 * scene.fuzz)
+
+
+@inner
+def _squares(work: Work, i: int) -> Interval:
+    """Return the range of the squared horizontal distance."""
+    return add(square(get(work.at[i, EX])), square(get(work.at[i, EY])))
+
+
+@inner
+def _root(scene: Scene, work: Work, c: Interval, start: float, side: float) -> float:
+    """Return an s at which f is proved to be of one sign in all of the box; NaN where none was."""
+    s = start
+    for _ in range(_STEPS):
+        f, slope = c[0], 0.0
+        for i in range(3):
+            X2, D = _squares(work, i), work.at[i, EZ]
+            mu = work.share[i, 0] if side > 0.0 else work.share[i, 1]
+            wide, drop = (X2[1], D[0]) if side > 0.0 else (X2[0], D[1])
+            length = rough_length(s * mu, wide, drop, scene.kappa)
+            _F, F_p, F_l, v, v_p, v_l, _t, _tp, _tl = unit_cable(
+                s * mu, length, wide, drop, scene.kappa
+            )
+            f += v
+            slope += mu * (v_p - v_l * F_p / F_l)
+        s = max(s - f / slope, 0.25 * s)
+    s *= 1.0 + side * _BEYOND
+    total = c
+    for i in range(3):
+        X2, D = _squares(work, i), work.at[i, EZ]
+        mu = work.share[i, 0] if side > 0.0 else work.share[i, 1]
+        wide, drop = (X2[1], D[0]) if side > 0.0 else (X2[0], D[1])
+        enclosure = enclose(multiply(point(s), point(mu)), point(wide), point(drop), scene.kappa)
+        if not enclosure[0]:
+            return math.nan
+        total = add(total, enclosure[5])
+    if (side > 0.0 and total[0] >= 0.0) or (side < 0.0 and total[1] <= 0.0):
+        return s
+    return math.nan
+
+
+@inner
+def _top_tension(p: Interval, X2: Interval, D: Interval, kappa: float) -> float:
+    """Return a bound on the top tension over a box.
+
+    At the end of the pulls where it is larger, if its slope has one sign; else from its enclosure.
+    """
+    slope = point(math.nan)
+    worst = math.inf
+    for turn in range(2):
+        at = p
+        if turn > 0 and slope[0] >= 0.0:
+            at = point(p[1])
+        elif turn > 0 and slope[1] <= 0.0:
+            at = point(p[0])
+        enclosure = enclose(at, point(X2[1]), point(D[1]), kappa)
+        if not enclosure[0]:
+            return math.inf
+        worst, slope = enclosure[9][1], enclosure[10]
+    return worst
+
 
 _MOST_TURNS = 5
 _LARGER = 1.1

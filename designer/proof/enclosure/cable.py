@@ -32,6 +32,16 @@ The slopes follow from the closure, with the total slope of the right side in p 
     v_D  = q A/2 - (1 + κ q² D/2) l_D/2        t_·  = (1 - κ q² |D|/2)(y_p + y_l l_·) + q sign(D)/2
 
 (y_p in t_p alone, and the last term in t_D alone). All terms of n and of l_p have one sign.
+
+How far cables sag is bounded from their pull and the slope m of their chord. Of a rigid cable with
+θ = 1 / (2 p) and c = √(1 + m²),
+
+    sag over chord = (C √(S + m²) + m log((m + c) √S / (m + √(S + m²))) - c) / (2 θ c²),
+    depth below its lower end over chord = (C √(S + m²) - m θ - 1) / (2 θ c),
+
+the latter where the lowest point lies between the ends: `designer.kernel.least_pull` without its
+inverse functions. Both fall as the pull grows and as the chord gets steeper; a cable that stretches
+sags less. So the smallest pull and the flattest chord of a box bound all of it.
 """
 
 from __future__ import annotations
@@ -212,3 +222,28 @@ def enclose(
     t_X2 = multiply(part, multiply(y_l, l_X2))
     t_D = add(multiply(part, multiply(y_l, l_D)), scale(multiply(q, sign(D)), 0.5))
     return True, length, l_p, l_X2, l_D, v, v_p, v_X2, v_D, t, t_p, t_X2, t_D
+
+
+_LOG_MARGIN = 2.0**-50
+"""Relative and absolute: more than the last place, which a logarithm is good to."""
+
+
+@inner
+def bound_sag(p: float, slope: float) -> tuple[float, float]:
+    """Return bounds on sag across and below over chord, pulls ≥ p > 0 and slopes ≥ slope ≥ 0."""
+    theta = up(0.5 / p)
+    if not theta <= LARGEST_THETA:
+        return math.inf, math.inf
+    S, C1 = sag(theta)
+    m = point(slope)
+    chord, reach = root(add(point(1.0), square(m))), root(add(S, square(m)))
+    high = multiply(add(point(1.0), C1), reach)
+    ratio = divide(multiply(add(m, chord), root(S)), add(m, reach))[1]
+    turn = up(up(math.log(ratio) * (1.0 + _LOG_MARGIN)) + _LOG_MARGIN)
+    across = up(up(high[1] + up(slope * turn)) - chord[0])
+    below = up(up(high[1] - down(slope * theta)) - 1.0)
+    twice = 2.0 * theta
+    return (
+        up(across / down(twice * square(chord)[0])),
+        up(below / scale(chord, twice)[0]),
+    )

@@ -16,7 +16,7 @@ from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
 from designer.selection.candidate import Candidate
 from designer.selection.usable import Usable
-from designer.workspace.result import Census
+from designer.workspace.sweep import Census
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

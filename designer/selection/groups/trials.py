@@ -24,8 +24,7 @@ from designer.selection.groups.master import Combination
 from designer.statics.geometry import cable_geometry
 from designer.statics.inverse import Statics, solve_sagging
 from designer.workspace.demand import is_left_out, length_demand
-from designer.workspace.pool import Pool
-from designer.workspace.refine import refine
+from designer.workspace.refine import Pool, refine
 
 _NUDGE = 1e-3
 """Relative step in the weight of a rope: the slope guides, and need not be exact."""
