@@ -1,7 +1,7 @@
 """Readings as a model predicts them by statics, and the residual of data in units of noise.
 
 Of a robot with cables to spare the internal forces of each row are taken from its own readings; see
-`designer.statics.internal`. Of a machine that was measured several times each session is predicted
+`designer.statics.balance`. Of a machine that was measured several times each session is predicted
 by itself: its effects, its rows, its clock.
 """
 
@@ -31,8 +31,8 @@ def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None
     """Return unstrained lengths and winch-side tensions of a machine in poses (n_rows,).
 
     Robots with as many cables as degrees of freedom are solved exactly, those with fewer as
-    `designer.statics.underactuated` has it. With more, the tensions nearest to balance are taken,
-    see `designer.statics.taut`.
+    `designer.statics.balance` has it. With more, the tensions nearest to balance are taken,
+    see `designer.statics.balance`.
     """
     force = None if measured is None else added_force_N(machine, measured)
     if machine.robot.is_redundant:
@@ -550,7 +550,7 @@ class Problem:
 def imbalance_of(predict: Predictor, settings: Sequence[Setting]) -> FloatArray | None:
     """Return what a model leaves out of balance in each row, over the weight (n_rows,).
 
-    None where there are enough cables to balance every pose; see `designer.statics.underactuated`.
+    None where there are enough cables to balance every pose; see `designer.statics.balance`.
     """
     if predict.machine.robot.has_enough_cables:
         return None

@@ -31,6 +31,7 @@ written: dict[Path, None] = {}
 
 def settle_in() -> None:
     """Make the streams take every letter, and a request to end leave nothing half-written."""
+    written.clear()
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:

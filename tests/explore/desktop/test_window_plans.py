@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from designer.sweeps.store import read_store
+from designer.sweeps.run import read_store
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QLabel, QMenu, QTableView
