@@ -69,6 +69,21 @@ def test_nothing_imports_from_above() -> None:
     assert upward == []
 
 
+RINGS = {"diagnosis", "foreign", "reference", "sweeps", "optimum", "exports", "explore"}
+"""Rooms that sizing, selection and analysis work without; the commands and the API bring them in."""
+
+
+def test_the_core_imports_no_ring() -> None:
+    core = set(ROOMS[: ROOMS.index("analysis") + 1]) - {"__init__"} - RINGS
+    inward = [
+        f"{file.relative_to(FOLDER)} imports {room}"
+        for file in FILES
+        if room_of(file) in core
+        for room in imported_rooms(file) & RINGS
+    ]
+    assert inward == []
+
+
 PRONOUNS = frozenset(
     """
     one found most some each met there those own way known told asked other others kept left few
