@@ -233,6 +233,12 @@ def attempt(
         return None
 
 
+def any_installed() -> bool:
+    """Return whether plugins of others are installed, without loading any."""
+    problems: list[str] = []
+    return bool(_installed(problems) or problems)
+
+
 def _installed(problems: list[str]) -> list[tuple[EntryPoint, str]]:
     """Return the entry points of others by name, each with its distribution and version."""
     own = {entry.value for entry in OWN_ENTRIES}

@@ -70,7 +70,7 @@ def test_nothing_imports_from_above() -> None:
 
 
 RINGS = {"diagnosis", "foreign", "reference", "sweeps", "optimum", "exports", "explore"}
-"""Rooms that sizing, selection and analysis work without; the commands and the API bring them in."""
+"""Rooms that sizing, selection and analysis work without; commands and API bring them in."""
 
 
 def test_the_core_imports_no_ring() -> None:

@@ -81,9 +81,9 @@ class Commands(HelpedCommands):
 
     def _add_those_of_plugins(self) -> None:
         from designer.cli.terminal import print_left_out
-        from designer.plugins import attempt, command_name, find_plugins, registered
+        from designer.plugins import any_installed, attempt, command_name, find_plugins, registered
 
-        if self._has_those_of_plugins:
+        if self._has_those_of_plugins or not any_installed():
             return
         self._has_those_of_plugins = True
         plugins = find_plugins()

@@ -37,7 +37,7 @@ TAKES_PART = 0.05
 NEAR = 1.5
 """For searches, see `frequencies_Hz`: coupling takes less than a third off a frequency."""
 _FEWEST, _MOST, _A_HALF_WAVE = 16, 512, 8
-"""Elements of a cable, and for each half wave: that leaves 1e-4 of a frequency."""
+"""Elements of a cable, and for each half wave: that leaves at most 5e-4 of a frequency."""
 _AT_ONCE, _AT_A_TIME, _MOST_TRIED = 2**12, 32, 256
 """Cables of all poses together, modes of one pose together, and those tried for the platform's."""
 _RANGE, _HALVINGS, _STEP = 1e6, 26, 1e-5

@@ -7,6 +7,7 @@ of the range; where nothing holds along it, another orientation may.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -153,6 +154,11 @@ class BestTurns(Following):
             f"at {_CHECKED} others the thickest cable along this law is {self.excess:.1%} thicker "
             "than in the best orientation of each"
         )
+        if math.isinf(self.excess):
+            costs = (
+                f"at some of {_CHECKED} others no taut cables hold the platform along this law, "
+                "where they do in the best orientation"
+            )
         if self._has_all:
             costs = "there are no others"
         return (

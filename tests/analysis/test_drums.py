@@ -200,7 +200,7 @@ def test_page_and_file_tell_turns_and_layers(tmp_path: Path) -> None:
     assert winches[0]["layers"] == 2
     html = render_html(design_report(analysis))
     assert "on the drum of the study" in html
-    assert "Drum takes up" in html
+    assert "Drum capacity" in html
     assert f"{winches[0]['turns']:.1f}" in html
 
 

@@ -188,7 +188,7 @@ def test_files_and_page_have_every_reaction(solve_study: Solve) -> None:
         assert entry["force_N"] == reaction.force_N.tolist()
         assert float(row["winch_branch_z_N"]) == reaction.winch_branch_N[2] < 0.0
     page = rendered(section(Drawings(analysis), "reactions")).body
-    assert "the branch from the winch" in page
+    assert "to the platform, and to the winch" in page
     assert "robot.winches.positions" not in page
 
 

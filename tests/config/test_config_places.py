@@ -140,7 +140,36 @@ def test_a_free_orientation_is_as_good_as_brute_force(seed: int, study_of: Study
     nodes = study.workspace.space.places(law.rows[0])
     held = size_poses(study.robot, Poses.at(nodes), study.material)
     assert held.diameter_m.max() <= law.best(law.rows[0])[1].max() * 1.0001
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("half_m", "is_held"), [(0.8, True), (2.0, False)])
+def test_what_a_free_orientation_costs_between(
+    half_m: float, is_held: bool, study_of: StudyOf
+) -> None:
+    """Near the rim few orientations leave all cables taut, and the law misses them at places."""
+    box = f"region: {{box: [[-{half_m}, {half_m}], [-{half_m}, {half_m}], [1, 4]]}}"
+    free = "orientation_free: {rx: [-15 deg, 15 deg], ry: [-10 deg, 20 deg]}"
+    study = study_of(f"{box}\n  {free}")
+    assert study.workspace is not None
+    law = study.workspace.orientations.law
+    assert isinstance(law, BestTurns)
+    positions = np.random.default_rng(0).uniform(
+        [-half_m, -half_m, 1], [half_m, half_m, 4], (90, 3)
+    )
+    along = size_poses(
+        study.robot, Poses.at(study.workspace.space.places(positions)), study.material
+    )
+    least_m = law.best(positions)[1]
+    is_possible = np.isfinite(least_m)
+    assert along.statics.is_solved[is_possible].all() == is_held
+    if not is_held:
+        assert law.excess == np.inf
+        return
+    assert is_possible.all()
+    assert (along.diameter_m >= least_m * 0.999).all()
     assert 0.0 <= law.excess < 0.1
+    assert along.diameter_m.max() < 1.1 * least_m.max()
     assert f"{law.excess:.1%} thicker" in law.words
 
 

@@ -36,6 +36,9 @@ _SELDOM = {
     "session",  # of logs of several sessions, which no page has
     # Of findings, each of which some studies have.
     *("policy", "depth_m", "inradius_m", "lowest_z_m"),
+    *("kind", "turn", "move", "mixed", "of_any_cable"),  # a motion that no cable resists
+    *("raised_m", "stronger"),  # what would hold a pose
+    *("what", "why", "by_neighbours"),  # what a yes is subject to
     *("year", "low", "high"),  # of prices that are borrowed
     *("file", "dates", "prices"),  # of a price list
     *(

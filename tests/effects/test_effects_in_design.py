@@ -159,7 +159,7 @@ def test_candidates_are_proved_with_the_mass_that_they_have_there(iced: Analysis
     found = solve_sagging(iced.study.robot, Poses.at(chosen.verification.worst_place), chosen.cable)
     assert float(found.largest_tension_N) == pytest.approx(chosen.verification.max_tension_N)
     (outcome,) = iced.selection.outcomes
-    row = (selection_dict(iced.selection, None) or {})["chosen"]
+    row = (selection_dict(iced.selection, None, None) or {})["chosen"]
     assert row["linear_mass_kg_per_m"] == chosen.size.linear_density_kg_per_m
     assert row["as_built_linear_mass_kg_per_m"] == chosen.cable.linear_density_kg_per_m
     thinner = outcome.family.cable(outcome.continuous_diameter_m)

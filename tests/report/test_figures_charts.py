@@ -15,6 +15,7 @@ from designer.analysis.maps import WorkspaceMaps
 from designer.analysis.pose import analyse_pose
 from designer.grades.registry import load_catalogue
 from designer.model.prism import Prism
+from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.report import format as fmt
 from designer.report.figures import canvas
@@ -321,6 +322,7 @@ class TestCandidates:
                 continuous_diameter_m=float("nan"),
                 candidates=(),
                 outcome="no_finite_cable",
+                verdict=Verdict.NO_FINITE_CABLE,
                 best=None,
             )
             for o in selection.outcomes

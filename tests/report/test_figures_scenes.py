@@ -252,7 +252,7 @@ _SHOWN = {
     "partly_exclude": "scale, left out",
     "found_by_search": "scale",
     "box": "scale, no cable",
-    "six": "scale",
+    "six": "scale, no cable",
     "points": "dots",
     "one_point": "dots",
     "lost_points": "dots",

@@ -153,6 +153,6 @@ def test_result_and_report_have_it(windy: Analysis) -> None:
     assert result["reserve"]["region_margin_m"] > 0.0
     section = section_of(Drawings(windy), "carries")
     assert section is not None
-    rows = {row[0]: row for row in cells(section, "What changes")}
+    rows = {row[0]: row for row in cells(section, "Change of the utilisation")}
     assert rows["Breaking load"][3].startswith("−")
-    assert "100.0 % are used" in said(section)
+    assert "utilisation reaches 100.0 %" in said(section)

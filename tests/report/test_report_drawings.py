@@ -78,4 +78,4 @@ def test_grades_that_all_cannot_hold_have_no_chart(analyses: dict[str, Analysis]
     source = Drawings(analyses["no_finite_cable"], draws=True, missing="no scenes")
     shown = section(source, "selection")
     assert not any("A row for each" in p.alternative for p in pictures(shown))
-    assert table(shown, "Grades of which no size holds").groups
+    assert table(shown, "Grades of which no size meets every requirement").groups

@@ -156,7 +156,7 @@ def test_modes_stand_in_file_and_report(found: Analysis) -> None:
 def test_the_report_tells_what_is_checked_and_what_not(found: Analysis) -> None:
     section = section_of(Drawings(found), "checks")
     assert section is not None
-    rows = table(section, "All that the study asks for").groups[0].rows
+    rows = table(section, "Requirements of the study").groups[0].rows
     assert {"Stiffness", "Excitation", "Drum"} <= {row.cells[0] for row in rows}
     assert "Not evaluated: D/d" in said(section)
     assert not any("excitation" in text for text in paragraphs(section))

@@ -109,12 +109,15 @@ def test_the_tables(drawings: Drawings) -> None:
 
 def test_the_checks(drawings: Drawings) -> None:
     section = section_of(drawings, "checks")
-    rows = {(row[0], row[-2].split(",")[0]): row[-1] for row in cells(section, "All that")}
+    rows = {
+        (row[0], row[-2].split(",")[0]): row[-1]
+        for row in cells(section, "Requirements of the study")
+    }
     for case in ("static", "<b>hoisting</b>", "storm", "lost"):
         assert rows["Equilibrium", case] == rows["Breaking load", case] == "holds"
     assert rows["Sheave", "all"] == rows["Slack", "storm"] == rows["Stability", "storm"] == "holds"
     assert "clearance (none is given)" in said(section)
-    total = cells(section, "The governing pose, in the load case <b>hoisting</b>: the forces")[-1]
+    total = cells(section, "The governing pose, in the load case <b>hoisting</b>: force")[-1]
     assert total[0] == "Sum"
     assert all(abs(float(cell.split("\u00a0")[0])) == 0.0 for cell in total[1:])
 

@@ -103,7 +103,7 @@ def test_unstable_poses_are_told(kept: Analysis) -> None:
     shown = section(Drawings(altered(kept, qualities=shaky)), "stiffness")
     verdict = statements(shown)["Some poses are not stable"]
     assert verdict.tone == "bad"
-    assert "not stay where it is put in 5.00\u00a0% of the samples" in verdict.text
+    assert "unstable in 5.00\u00a0% of the samples" in verdict.text
     assert facts(shown)["Softest pose"].value == "not stable"
 
 

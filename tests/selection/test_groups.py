@@ -125,7 +125,8 @@ def lightest_by_hand(
     most_distinct: int,
 ) -> float:
     def mass(chosen: tuple[Candidate, ...]) -> float:
-        asked = robot, replace(workspace, region=None), [one.cables for one in groups]
+        assert isinstance(workspace.region, PointList)
+        asked = robot, workspace.hangs_below, [one.cables for one in groups]
         of = (*map(repr, asked), workspace.region.points_m.tobytes(), *(c.cable for c in chosen))
         if of not in _BY_HAND:
             _BY_HAND[of] = mass_by_hand(robot, workspace, groups, chosen)

@@ -423,7 +423,9 @@ def test_survey_of_a_point_mass_has_nothing_to_compare(fast_robot, steel) -> Non
 
 
 CARRYING = replace(
-    COGIRO, platform=replace(COGIRO.platform, wrench_N=frozen_array([0.0, 0, -2000, 0, 0, 0]))
+    COGIRO,
+    platform=replace(COGIRO.platform, wrench_N=frozen_array([0.0, 0, -2000, 0, 0, 0])),
+    sag_max=0.5,  # so that cables may hang down to others
 )
 
 

@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from designer.sweeps.run import read_store
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QLabel, QMenu, QTableView
 from window_driver import LEFT, LONGEST_MS, Driver
 
 from designer.explore.question import Long
+from designer.sweeps.run import read_store
 
 OPTIMISATION = """study: yard.yaml
 objective: rope_mass
