@@ -18,7 +18,7 @@ ROPE = Material(5290.0, 62.7e9, 198e6)
 
 
 def robot_and_poses(seed: int, n_cables: int, count: int) -> tuple[Robot, Poses]:
-    """Cables from above: six may be slack over a large pulley, more sag at most by half."""
+    """Cables from above: over large pulleys six may be slack, eight sag as far as they may."""
     rng = np.random.default_rng(seed)
     angle = np.sort(rng.uniform(0.0, 2.0 * np.pi, n_cables))
     height = rng.uniform(-4.0, 4.0, n_cables)
@@ -31,8 +31,7 @@ def robot_and_poses(seed: int, n_cables: int, count: int) -> tuple[Robot, Poses]
             rng.uniform(-0.2, 0.2, (count, 3)),
         ]
     )
-    robot = Robot(frozen_array(exits), platform, pulley_radius_m=4.0, sag_max=0.5)
-    return robot, Poses.at(places)
+    return Robot(frozen_array(exits), platform, pulley_radius_m=4.0), Poses.at(places)
 
 
 def off_tangent(statics: Statics) -> FloatArray:
@@ -52,7 +51,7 @@ def off_tangent(statics: Statics) -> FloatArray:
 
 @pytest.mark.parametrize(("seed", "n_cables"), [(0, 6), (1, 8), (2, 8)])
 def test_what_is_solved_leaves_its_pulley_as_a_tangent(seed, n_cables) -> None:
-    robot, poses = robot_and_poses(seed, n_cables, 450)
+    robot, poses = robot_and_poses(seed, n_cables, 600)
     for statics in (
         size_poses(robot, poses, ROPE).statics,
         solve_sagging(robot, poses, ROPE.cable(0.01)),
