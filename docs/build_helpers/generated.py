@@ -132,8 +132,8 @@ def effects():
 
 def verdicts():
     """What may become of a pose."""
-    rows = ((f"`{verdict.label}`", verdict.sentence, verdict.advice) for verdict in Verdict)
-    return _table(rows, ("verdict", "meaning", "what to do"))
+    rows = ((f"`{verdict.label}`", verdict.sentence) for verdict in Verdict)
+    return _table(rows, ("verdict", "meaning"))
 
 
 def commands_page():
