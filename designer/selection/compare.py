@@ -13,6 +13,7 @@ from designer.model.load_case import STATIC
 from designer.selection.candidate import Candidate, Standing
 from designer.selection.objectives import MEANINGS
 from designer.selection.verify import Verification
+from designer.spelling import position
 from designer.study import Objective
 
 Search = Callable[[Sequence[Candidate]], Sequence[Verification]]
@@ -97,7 +98,7 @@ def _standing(
     candidate: Candidate, front: Sequence[Candidate], objectives: Sequence[Objective]
 ) -> tuple[Standing, str]:
     met, best = candidate.verification, front[0] if front else None
-    worst = f"({', '.join(f'{x:.4g}' for x in met.worst_place[:3])}) m{candidate.in_case}"
+    worst = f"{position(met.worst_place[:3])}{candidate.in_case}"
     if candidate.sampled.not_held or np.isinf(met.utilisation):
         why = "in every sample a cable hangs below the platform"
         return "not_held", (
