@@ -199,20 +199,19 @@ def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes:
     ropes = Ropes((), None, "", is_final=True)
     if of_ropes.selection is not None:
         ropes = ropes_of(of_ropes.selection, of_ropes.groups)
-    return replace(
-        ropes,
-        problems=catalogue.problems,
-        requirements=analysis.requirements,
-        answer=analysis.answer,
-        terms=analysis.terms,
-    )
+    return _answered(replace(ropes, problems=catalogue.problems), analysis)
 
 
 def asked_alone(question: Question) -> Ropes:
     """Answer a study that asks for no rope; no rows."""
     analysis = Analysis.begin(question.study, question.catalogue)
-    requirements, answer = analysis.requirements, analysis.answer
-    return Ropes((), None, "", is_final=True, requirements=requirements, answer=answer)
+    return _answered(Ropes((), None, "", is_final=True), analysis)
+
+
+def _answered(ropes: Ropes, analysis: Analysis) -> Ropes:
+    """Return the ropes with the answer to the study, and what it covers."""
+    answer, terms = analysis.answer, analysis.terms
+    return replace(ropes, requirements=analysis.requirements, answer=answer, terms=terms)
 
 
 def ropes_of(selection: SelectionResult, groups: GroupChoice | None = None) -> Ropes:

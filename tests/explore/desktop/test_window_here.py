@@ -71,7 +71,7 @@ def test_a_pose_that_nothing_holds_is_told(yard: Driver) -> None:
     yard.type_into("place z", "40")
     yard.rest()
     verdict = yard.find(QLabel, "verdict")
-    assert verdict.text().startswith("No cables can hold the platform")
+    assert verdict.text().startswith("No tensions of taut cables hold the platform")
     assert verdict.property("role") == "fault"
     assert yard.find(QTableView, "cables").model().rowCount() == 0
     assert "lies outside the region" in yard.find(QLabel, "cautions").text()
