@@ -62,6 +62,7 @@ class Ring:
 RINGS = (
     Ring("reference", ("reference",), ("verify",)),
     Ring("drafting", ("drafting",), ("catalog new",)),
+    Ring("window", ("explore",), ("explore",)),
 )
 """What no room of the core imports, and no other ring but where `tests/test_house.py` says so."""
 OWN_ENTRIES = tuple(
