@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOMES = {
-    "designer.api": "analyse catalogue compare diagnose export find_poses follow lengths read_study"
-    " size sweep write_report",
+    "designer.api": "analyse catalogue compare diagnose find_poses follow lengths read_study size"
+    " sweep write_report",
     "designer.analysis.analyse": "Analysis",
     "designer.analysis.comparison": "Comparison",
     "designer.analysis.lengths": "FoundPoses Lengths",
@@ -20,6 +20,7 @@ _HOMES = {
     "designer.grades.grade": "Grade",
     "designer.grades.registry": "Catalogue",
     "designer.diagnosis.result": "Diagnosis",
+    "designer.exports.formats": "export",
     "designer.errors": "DesignerError EffectError InputError OutputError",
     "designer.model.cable": "Cable Material",
     "designer.model.drum": "Drum",
@@ -51,7 +52,6 @@ if TYPE_CHECKING:
         catalogue,
         compare,
         diagnose,
-        export,
         find_poses,
         follow,
         lengths,
@@ -62,6 +62,7 @@ if TYPE_CHECKING:
     )
     from designer.diagnosis.result import Diagnosis
     from designer.errors import DesignerError, EffectError, InputError, OutputError
+    from designer.exports.formats import export
     from designer.grades.grade import Grade
     from designer.grades.registry import Catalogue
     from designer.model.cable import Cable, Material

@@ -19,7 +19,7 @@ from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.arrays import FloatArray
 from designer.diagnosis.result import Diagnosis
 from designer.effects.load import load_effects
-from designer.errors import InputError, NothingToExportError, WrongValueError
+from designer.errors import InputError, WrongValueError
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.io import config
 from designer.io.results import read_result
@@ -46,7 +46,6 @@ __all__ = [
     "catalogue",
     "compare",
     "diagnose",
-    "export",
     "find_poses",
     "follow",
     "lengths",
@@ -97,7 +96,7 @@ def analyse(
 
     Parameters and errors are those of `designer.analysis.analyse.analyse`, and of `read_study`.
     """
-    return analyse_study(_study(study), catalogue, folder, reporter)
+    return analyse_study(as_study(study), catalogue, folder, reporter)
 
 
 def write_report(
@@ -114,7 +113,7 @@ def write_report(
     ours, and a ``quick`` report is page 1 in HTML alone.
     """
     if not isinstance(analysis, Analysis):
-        study = _study(analysis)
+        study = as_study(analysis)
         analysis = Analysis.begin(study.unproved) if quick else analyse_study(study)
     write_analysis(analysis, folder, template, quick=quick)
 
@@ -127,7 +126,7 @@ def size(study: AnyStudy) -> PoseAnalysis:
     InputError
         If the study has no pose, or the robot has fewer cables than degrees of freedom.
     """
-    return analyse_pose(_study(study))
+    return analyse_pose(as_study(study))
 
 
 def follow(
@@ -156,7 +155,7 @@ def follow(
     InputError
         If there are neither times nor both limits, or a value is wrong.
     """
-    study = _study(study)
+    study = as_study(study)
     rows = _rows("places", places)
     rows = np.pad(rows, ((0, 0), (0, 6 - rows.shape[1])))
     up, limits = study.robot.level[2], (speed_max_m_per_s, acceleration_max_m_per_s2)
@@ -255,33 +254,6 @@ def sweep(
     return read_store(path).load()
 
 
-def export(study: AnyStudy, to: str, path: Path | str) -> tuple[str, ...]:
-    """Write the study for another program; returns what that cannot take, a line each.
-
-    ``to`` is ``caspr``, ``moordyn``, ``mujoco``, ``gltf`` or ``csv``. As `designer export` does.
-
-    Raises
-    ------
-    InputError
-        If there is no such format, the name of the file has another ending than it, or nothing
-        serves the study.
-    OutputError
-        If it cannot be written.
-    """
-    from designer.exports.formats import FORMATS, export_study
-
-    if to not in FORMATS:
-        raise WrongValueError("export", "to", f"to is {to!r}", ", ".join(FORMATS))
-    kind, target, study = FORMATS[to], Path(path), _study(study)
-    if not target.name.endswith(kind.ending):
-        raise WrongValueError("export", "path", f"path is {target.name!r}", f"…{kind.ending}")
-    try:
-        made = export_study(kind, target, study, load_catalogue(), SILENT)
-    except NothingToExportError as reason:
-        raise InputError.at(study.source.path, str(reason)) from None
-    return tuple(made.lost)
-
-
 def _rows(name: str, values: ArrayLike, *widths: int) -> FloatArray:
     """Return numbers as rows (n, one of the widths: 3 or 6 if left out)."""
     try:
@@ -295,12 +267,13 @@ def _rows(name: str, values: ArrayLike, *widths: int) -> FloatArray:
     return rows
 
 
-def _study(study: AnyStudy) -> Study:
+def as_study(study: AnyStudy) -> Study:
+    """Return a study, read if it is named by its file."""
     return read_study(study) if isinstance(study, str | Path) else study
 
 
 def _begun(study: Analysis | AnyStudy) -> Analysis:
-    return study if isinstance(study, Analysis) else Analysis.begin(_study(study).unproved)
+    return study if isinstance(study, Analysis) else Analysis.begin(as_study(study).unproved)
 
 
 def _served(answer: Answer | None) -> Answer:
@@ -333,7 +306,7 @@ def diagnose(
     from designer.diagnosis.diagnose import diagnose_study
     from designer.measured.read import read_measured
 
-    study = _study(study)
+    study = as_study(study)
     if data is not None and study.measurements is not None:
         study = replace(study, measurements=study.measurements.of_file(Path(data)))
     return diagnose_study(study, read_measured(study), progress)

@@ -18,8 +18,6 @@ import typer
 from designer import __version__
 from designer.cli.catalog import catalog
 from designer.cli.compare import compare
-from designer.cli.export import export
-from designer.cli.import_robot import import_robot
 from designer.cli.lengths import lengths, pose
 from designer.cli.optimise import optimise
 from designer.cli.options import (
@@ -97,8 +95,6 @@ app.command()(pose)
 app.command()(compare)
 app.command()(sweep)
 app.command()(optimise)
-app.command("import")(import_robot)
-app.command()(export)
 app.command()(schema)
 
 

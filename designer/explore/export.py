@@ -18,6 +18,7 @@ from designer.explore.question import Question
 from designer.explore.reading import text_of
 from designer.explore.ropes import RopeRow, Ropes, quick_ropes
 from designer.io.output import file_names, output_folder, write_file
+from designer.plugins import require_ring
 from designer.progress import Reporter
 
 What = Literal[
@@ -134,6 +135,7 @@ def _lengths(question: Question, reporter: Reporter, target: Path, poses: Path |
 
 def _for_program(question: Question, reporter: Reporter, name: str, target: Path) -> Written:
     """Write the study for another program, as `designer export` does."""
+    require_ring("export")
     from designer.exports.formats import FORMATS, export_study
 
     made = export_study(FORMATS[name], target, question.study, question.catalogue, reporter)

@@ -362,6 +362,9 @@ def _import(source: Path, target: Path, plugins: Plugins) -> None:
     DesignerError
         If there is no such robot in the file, or the study cannot be written.
     """
+    from designer.plugins import require_ring
+
+    require_ring("import")
     from designer.foreign.study import ImportAnswers, load_importers, read_foreign, study_text
     from designer.io.output import write_file
 
