@@ -34,8 +34,14 @@ def selection_dict(
         for c in o.candidates
     }
     chosen, usable, untrusted = selection.chosen, selection.usable, selection.untrusted
+    rival = chosen and chosen.preferred_to
     return {
         "objectives": selection.objectives,
+        "preference": {
+            "units": selection.prefer,
+            "instead_of": rival and rows[rival],
+            "why": selection.preference or None,
+        },
         "currency": selection.currency,
         "price_estimate": selection.price_estimate,
         "price_list": selection.price_list and _prices(selection.price_list),

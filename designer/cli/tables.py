@@ -135,6 +135,8 @@ def _summary_of_chosen(
     terms = f"at safety factor {request.safety_factor:g}, {losses} at {lost_at}"
     case = chosen.governing.case
     terms = terms if case is STATIC else f"in the load case '{escape(case.name)}'"
+    if selection.preference:
+        yield "  preference", escape(selection.preference)
     yield "  utilisation", f"{chosen.verification.utilisation:.1%} {terms}"
     for result in chosen.cases:
         if result.case is not STATIC:

@@ -19,6 +19,10 @@ STEEL_EXPANSION_PER_K = 12e-6
 """Thermal expansion of steel, EN 1993-1-1:2005, 3.2.6 [1/K]."""
 Trust = Literal["A", "B", "C"]
 """How far the figures of a rope are to be trusted: a maker's own, a seller's, third hand."""
+SizeUnits = Literal["metric", "imperial"]
+"""What the sizes of a rope are stepped in: millimetres or inches."""
+Preference = Literal["metric", "imperial", "none"]
+"""Units of the sizes that take the place of others as good as they are."""
 MaterialName = Literal[
     "steel", "stainless", "hmpe", "vectran", "pbo", "aramid", "polyester", "nylon",
     "polyester and nylon", "polypropylene", "other",

@@ -100,7 +100,7 @@ def study_of(
         source=StudySource(path, document.sha256, given, lines, (*places.tables, *tables)),
         pose=None if pose is None else pose.poses(),
         workspace=places.workspace,
-        selection=None if selection is None else selection.selection(price_list),
+        selection=None if selection is None else selection.selection(price_list, given),
         load_cases=tuple(
             _load_case(document, index, robot, section, places)
             for index in range(len(section.load_cases))

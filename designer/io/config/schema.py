@@ -6,6 +6,8 @@ in ``effects`` in `designer.io.config.effects`.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from math import inf
 from pathlib import Path
 from typing import Annotated, Literal
@@ -29,7 +31,7 @@ from designer.io.config import regions
 from designer.io.config.columns import Columns
 from designer.io.config.machine import ConfiguredCable, LoadCaseSection, RobotSection
 from designer.io.config.uncertainty import UncertaintySection
-from designer.model.cable import MaterialName, Trust
+from designer.model.cable import MaterialName, Preference, Trust
 from designer.model.duty import RUNNING_ROPE, DutyClass
 from designer.model.measurements import LogColumn, LogSession, Measurements, Reading
 from designer.model.motion import Ends
@@ -39,9 +41,10 @@ from designer.model.robot import SAG_MAX, Poses
 from designer.model.rope_life import RopeLife
 from designer.model.space import Orientations
 from designer.model.workspace import HangsBelow, Workspace
-from designer.study import CableGroup, DocumentControl, Objective, RopeLimits, Selection
+from designer.study import CableGroup, DocumentControl, Entry, Objective, RopeLimits, Selection
 from designer.units import describe
 
+_INCHES_OR_FEET = re.compile(r"\d\s*(in|inch|inches|ft|foot|feet)\b")
 _GRADES = "'all' or a list of grade ids"
 _MATERIALS = "'all' or a list of materials such as [steel, stainless]"
 Objectives = Annotated[
@@ -285,6 +288,9 @@ class SelectionSection(Section):
     standard's own table, B, a seller's transcript, C, third hand; a doubted size counts as C."""
     materials: Materials = "all"
     """Materials to choose among: all, or a list."""
+    prefer: Preference | Literal["study"] = config_field("Preferred sizes", "study")
+    """Sizes that are chosen before others as good, at most 2 % worse in each objective: metric,
+    imperial, none, or study: imperial where most lengths of the study are in inches or feet."""
     safety_factor: fields.SafetyFactor = 5.0
     """What is left of the minimum breaking load, over the allowable tension."""
     duty_class: DutyClass = config_field("Duty class", "none")
@@ -322,8 +328,12 @@ class SelectionSection(Section):
         regions.only_one_of(given, ("safety_factor", "duty_class"), "the selection")
         return {**given, "safety_factor": factor}
 
-    def selection(self, price_list: PriceList | None) -> Selection:
-        """Return how a product is chosen, with the prices of its list."""
+    def selection(self, price_list: PriceList | None, entries: Sequence[Entry]) -> Selection:
+        """Return how a product is chosen, with the prices of its list, in a study as given."""
+        given = (entry for entry in entries if entry.given != "default")
+        lengths = [entry.given for entry in given if entry.value_SI.endswith(" m")]
+        in_feet = [given for given in lengths if _INCHES_OR_FEET.search(given)]
+        of_study: Preference = "imperial" if 2 * len(in_feet) > len(lengths) else "metric"
         groups = self.groups or {}
         return Selection(
             grades=None if self.grades == "all" else self.grades,
@@ -339,6 +349,7 @@ class SelectionSection(Section):
             price_list=price_list,
             trust=self.trust,
             materials=() if self.materials == "all" else self.materials,
+            prefer=of_study if self.prefer == "study" else self.prefer,
         )
 
 
