@@ -22,7 +22,7 @@ from designer.grades.grade import Grade
 from designer.plugins import OWN_NAMES, Offer, Plugins, call_hook, find_plugins
 
 if TYPE_CHECKING:
-    from designer.model.price_list import PriceList
+    from designer.model.cable import PriceList
     from designer.study import Study  # geometry, which a list of grades does not need
 
 MOST_PROBLEMS_OF_A_SOURCE = 20

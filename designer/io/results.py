@@ -25,7 +25,7 @@ from designer.documents.section import MOST_FAULTS
 from designer.errors import Fault, InputError
 from designer.io.config.moved import moved_to, path_from
 from designer.io.output import write_whole
-from designer.model.measured_data import KINDS
+from designer.model.measurements import KINDS
 from designer.units import describe
 
 _RESULT = "a result.json that `designer report` wrote"

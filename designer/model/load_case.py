@@ -1,10 +1,10 @@
 r"""Load cases: what acts on platform and cables, as a change of the robot and of its cables.
 
-Wind of speed v has the pressure :math:`q = \tfrac12 \varrho v^2`, with 1.25 kg/m³ for air (EN
+Wind of speed v has the pressure :math:`q =     frac12 arrho v^2`, with 1.25 kg/m³ for air (EN
 1991-1-4, 4.5). On the platform it makes the force :math:`q\,C_d A`, at a point of the body, the
 centre of mass unless given; on a cable, per unstrained length, :math:`q\,C_d\,d`, along the wind
 and at full speed whatever the cable's inclination. Ice of thickness t adds the weight
-:math:`\pi t (d + t) \varrho_i g` and makes the cable :math:`d + 2 t` thick in the wind. What is
+:math:`\pi t (d + t) arrho_i g` and makes the cable :math:`d + 2 t` thick in the wind. What is
 attached along a cable is a second cylinder beside the rope: in the full wind, and iced all around,
 as the rope is.
 
@@ -30,7 +30,60 @@ from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.region import Region
 from designer.model.robot import Platform, Robot
 from designer.model.space import Orientations
-from designer.model.wrench_set import WrenchSet
+
+MOST_WRENCHES = 64
+"""The corners of a box in all six parts of a wrench."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WrenchSet(checked.Value):
+    """Wrenches on a platform, of which any one may act.
+
+    Parameters
+    ----------
+    wrenches_N : array (n, 6)
+        As `Platform.wrench_N`, each for itself; of a box its corners [N, N·m].
+    is_box : bool
+        Whether all wrenches between them may act as well, each part for itself.
+    """
+
+    wrenches_N: Annotated[FloatArray, checked.Shape((None, 6))]
+    is_box: bool = False
+
+    def __post_init__(self) -> None:
+        checked.check_fields(self)
+        if not 1 <= len(self.wrenches_N) <= MOST_WRENCHES:
+            raise ValueError(f"a set has 1 to {MOST_WRENCHES} wrenches, not {len(self.wrenches_N)}")
+
+    @classmethod
+    def between(cls, first_N: FloatArray, last_N: FloatArray) -> WrenchSet:
+        """Return the box between two wrenches (6,), by its corners."""
+        ends = [sorted({float(a), float(b)}) for a, b in zip(first_N, last_N, strict=True)]
+        return cls(np.array(list(product(*ends))), is_box=True)
+
+    @property
+    def bounds_N(self) -> FloatArray:
+        """Least and greatest of each part (2, 6)."""
+        return np.array([self.wrenches_N.min(axis=0), self.wrenches_N.max(axis=0)])
+
+    def scaled(self, factor: float) -> WrenchSet:
+        """Return the same, so many times as large."""
+        return replace(self, wrenches_N=factor * self.wrenches_N)
+
+    def beside(self, wrench_N: FloatArray, step: float) -> Iterator[FloatArray]:
+        """Yield the wrenches of a box by a step, of half its width, from one (6,) of them."""
+        if not self.is_box:
+            return
+        lower, upper = self.bounds_N
+        for part in np.flatnonzero(upper > lower):
+            for along in (-step, step):
+                moved = wrench_N[part] + 0.5 * along * (upper - lower)[part]
+                moved = min(max(moved, lower[part]), upper[part])
+                if moved != wrench_N[part]:
+                    other = wrench_N.copy()
+                    other[part] = moved
+                    yield other
+
 
 AIR_DENSITY_KG_PER_M3 = 1.25
 """EN 1991-1-4, 4.5; of every wind in this program, measured or assumed [kg/m³]."""

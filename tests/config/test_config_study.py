@@ -15,8 +15,7 @@ from designer.documents.section import Section
 from designer.errors import InputError
 from designer.io.config import columns, read_study, schema
 from designer.model.measurements import LogColumn
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.uncertainty import Uniform
 from designer.model.workspace import Workspace
 from designer.resources import data_folder, example_file

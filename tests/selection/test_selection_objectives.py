@@ -13,8 +13,7 @@ from ropes import rope
 
 from designer.arrays import frozen_array
 from designer.model.cable import Cable
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.workspace import Workspace
 from designer.selection.candidate import common_currency
 from designer.selection.compare import dominator_of, is_undominated

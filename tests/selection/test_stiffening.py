@@ -17,8 +17,7 @@ from designer.grades.grade import Grade
 from designer.grades.parts import RelativeStiffness
 from designer.model.cable import Cable, Stiffening
 from designer.model.load_case import LoadCase, Wind
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
 from designer.progress import Advance

@@ -22,8 +22,7 @@ from designer.io.config.machine import attached_each
 from designer.io.config.robot_checks import AT_MOST, LARGEST, ROBOT_CHECKS, Parts, rank, valid
 from designer.measured.assign import COVARIATE, IGNORE, TIME_NAME, cable_of, is_rotation
 from designer.model.measurements import POSES
-from designer.model.prism import Prism
-from designer.model.rectangle import Rectangle
+from designer.model.region import Prism, Rectangle
 from designer.spelling import did_you_mean
 from designer.units import describe
 

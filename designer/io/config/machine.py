@@ -15,13 +15,11 @@ from designer.documents.fields import Text, WholeNumber, list_of, only_word
 from designer.documents.section import Section, config_field
 from designer.io.config.regions import AnyRegion, Box, only_one_of
 from designer.model.cable import Attached, AttachedEach
-from designer.model.drum import DEAD_TURNS, MOST_LAYERS, ROPE_OVERSIZE, Drum
-from designer.model.load_case import Ice, LoadCase, Wind
+from designer.model.load_case import MOST_WRENCHES, Ice, LoadCase, Wind, WrenchSet
 from designer.model.region import Region
 from designer.model.robot import Platform, Robot
 from designer.model.space import Orientations
-from designer.model.winches import Winches
-from designer.model.wrench_set import MOST_WRENCHES, WrenchSet
+from designer.model.winches import DEAD_TURNS, MOST_LAYERS, ROPE_OVERSIZE, Drum, Winches
 
 _points = list_of(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
 

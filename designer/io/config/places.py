@@ -21,11 +21,9 @@ from designer.io.config.schema import (
 from designer.io.poses import TIME, PoseTable, path_faults, read_poses
 from designer.model.cable import Material
 from designer.model.motion import Motion, limited, timed
-from designer.model.point_list import PointList
-from designer.model.region import Region
+from designer.model.region import PointList, Region
 from designer.model.robot import Robot
-from designer.model.space import Orientations
-from designer.model.turning import EachPose, Toward, TurnTable
+from designer.model.space import EachPose, Orientations, Toward, TurnTable
 from designer.model.workspace import Workspace
 from designer.workspace.best_turns import BestTurns
 

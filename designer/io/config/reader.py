@@ -22,12 +22,10 @@ from designer.io.config.places import Places, places_of
 from designer.io.config.regions import OrientationSection
 from designer.io.config.schema import SelectionSection, StudySection
 from designer.io.prices import read_prices
-from designer.model.cable import Material
+from designer.model.cable import Material, PriceList
 from designer.model.load_case import MOST_DIRECTIONS, LoadCase
-from designer.model.machine import Surroundings
-from designer.model.price_list import PriceList
 from designer.model.region import Region
-from designer.model.robot import Robot
+from designer.model.robot import Robot, Surroundings
 from designer.model.space import Orientations
 from designer.plugins import Plugins, find_plugins
 from designer.study import DeclaredEffect, Entry, GradeFamily, Study, StudySource

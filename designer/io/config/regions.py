@@ -19,10 +19,7 @@ from designer.arrays import FloatArray, frozen_array
 from designer.documents import fields
 from designer.documents.fields import Rotation, Turn, bounded, list_of, only_word, refusal
 from designer.documents.section import Section, config_field
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
-from designer.model.rectangle import Rectangle
-from designer.model.region import Region
+from designer.model.region import PointList, Prism, Rectangle, Region
 from designer.units import describe
 
 FORMS = ("rotation_vector", "quaternion", "euler")

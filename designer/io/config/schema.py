@@ -29,15 +29,13 @@ from designer.io.config import regions
 from designer.io.config.columns import Columns
 from designer.io.config.machine import ConfiguredCable, LoadCaseSection, RobotSection
 from designer.io.config.uncertainty import UncertaintySection
-from designer.model.cable import MaterialName, Trust
-from designer.model.duty import RUNNING_ROPE, DutyClass
+from designer.model.cable import MaterialName, PriceList, Trust
 from designer.model.measurements import LogColumn, LogSession, Measurements, Reading
 from designer.model.motion import Ends
-from designer.model.price_list import PriceList
 from designer.model.region import Region, Sampling
 from designer.model.robot import SAG_MAX, Poses
-from designer.model.rope_life import RopeLife
 from designer.model.space import Orientations
+from designer.model.winches import RUNNING_ROPE, DutyClass, RopeLife
 from designer.model.workspace import HangsBelow, Workspace
 from designer.study import CableGroup, DocumentControl, Objective, RopeLimits, Selection
 from designer.units import describe
