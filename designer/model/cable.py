@@ -31,18 +31,10 @@ Unlimited = Annotated[float, checked.Number(above=0.0, finite=False)]
 
 @dataclass(frozen=True, slots=True)
 class Stiffening:
-    """EA of a rope that depends on its tension: linear between the points, constant beyond.
+    """EA of a rope that depends on its tension: linear between the points, constant beyond."""
 
-    Parameters
-    ----------
-    tension_N : tuple of float
-        Tensions, ascending [N].
-    axial_stiffness_N : tuple of float
-        EA at each of them [N].
-    """
-
-    tension_N: tuple[float, ...]
-    axial_stiffness_N: tuple[float, ...]
+    tension_N: tuple[float, ...]  #: Tensions, ascending [N]
+    axial_stiffness_N: tuple[float, ...]  #: EA at each of them [N]
 
     def at(self, tension_N: float) -> float:
         """Return EA at a tension [N]."""
@@ -63,18 +55,11 @@ class Stiffening:
 
 @dataclass(frozen=True, slots=True)
 class Attached(checked.Value):
-    """What is clipped along a cable, such as a power line or a hose: it weighs, and bears nothing.
+    """What is clipped along a cable, such as a hose: it weighs, and bears nothing."""
 
-    Parameters
-    ----------
-    linear_density_kg_per_m : float
-        Its mass per unstrained length of the cable [kg/m].
-    diameter_m : float
-        Its diameter, in wind and ice [m].
-    """
-
+    #: Its mass per unstrained length of the cable [kg/m]
     linear_density_kg_per_m: checked.NotNegative = 0.0
-    diameter_m: checked.NotNegative = 0.0
+    diameter_m: checked.NotNegative = 0.0  #: Its diameter, in wind and ice [m]
 
 
 AttachedEach = tuple[Attached, ...]
@@ -185,17 +170,11 @@ class Cables:
 
     Its figures have the names of those of a `Cable`, as arrays (n_cables,), or (n_poses, 1), or
     (n_poses, n_cables) where what is attached to the cables differs.
-
-    Parameters
-    ----------
-    each : sequence of Cable
-        One for each exit point, in that order; or those that ``of_pose`` counts.
-    of_pose : array (n_poses,) or None
-        Which of them is on all winches in each pose.
     """
 
+    #: One for each exit point, in that order; or those that ``of_pose`` counts
     each: Sequence[Cable]
-    of_pose: IntArray | None = None
+    of_pose: IntArray | None = None  #: (n_poses,): Which of them is on all winches in each pose
     linear_density_kg_per_m: FloatArray = field(init=False)
     weight_N_per_m: FloatArray = field(init=False)
     axial_stiffness_N: FloatArray = field(init=False)

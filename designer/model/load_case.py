@@ -1,10 +1,10 @@
 r"""Load cases: what acts on platform and cables, as a change of the robot and of its cables.
 
-Wind of speed v has the pressure :math:`q =     frac12 arrho v^2`, with 1.25 kg/m³ for air (EN
+Wind of speed v has the pressure :math:`q = \tfrac12 \varrho v^2`, with 1.25 kg/m³ for air (EN
 1991-1-4, 4.5). On the platform it makes the force :math:`q\,C_d A`, at a point of the body, the
 centre of mass unless given; on a cable, per unstrained length, :math:`q\,C_d\,d`, along the wind
 and at full speed whatever the cable's inclination. Ice of thickness t adds the weight
-:math:`\pi t (d + t) arrho_i g` and makes the cable :math:`d + 2 t` thick in the wind. What is
+:math:`\pi t (d + t) \varrho_i g` and makes the cable :math:`d + 2 t` thick in the wind. What is
 attached along a cable is a second cylinder beside the rope: in the full wind, and iced all around,
 as the rope is.
 
@@ -37,18 +37,11 @@ MOST_WRENCHES = 64
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WrenchSet(checked.Value):
-    """Wrenches on a platform, of which any one may act.
+    """Wrenches on a platform, of which any one may act."""
 
-    Parameters
-    ----------
-    wrenches_N : array (n, 6)
-        As `Platform.wrench_N`, each for itself; of a box its corners [N, N·m].
-    is_box : bool
-        Whether all wrenches between them may act as well, each part for itself.
-    """
-
+    #: (n, 6): As `Platform.wrench_N`, each for itself; of a box its corners [N, N·m]
     wrenches_N: Annotated[FloatArray, checked.Shape((None, 6))]
-    is_box: bool = False
+    is_box: bool = False  #: Whether all wrenches between them may act as well, each part for itself
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
@@ -157,33 +150,17 @@ class Ice(checked.Value):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Loaded:
-    """A robot and its cables under one load case, in one direction of wind and inertia.
-
-    Parameters
-    ----------
-    case : LoadCase
-        The case.
-    bare : tuple of Robot and Cable
-        What it was put on.
-    robot : Robot
-        With what acts on the platform, and the direction of the load on its cables.
-    cable : Cable
-        With the load per length in place of its weight.
-    wind, inertia : array (3,) or None
-        Unit vectors of where the wind blows to and the inertia force points, world frame.
-    lost_cable : int or None
-        The cable that is gone, from 1; the robot above still has it.
-    wrench_N : array (6,) or None
-        That of the case's set of wrenches, without the dynamic factor [N, N·m].
-    """
+    """A robot and its cables under one load case, in one direction of wind and inertia."""
 
     case: LoadCase
-    bare: tuple[Robot, Cable]
-    robot: Robot
-    cable: Cable
+    bare: tuple[Robot, Cable]  #: What it was put on
+    robot: Robot  #: With what acts on the platform, and the direction of the load on its cables
+    cable: Cable  #: With the load per length in place of its weight
+    #: (3,): Unit vectors of where the wind blows to and the inertia force points, world frame
     wind: FloatArray | None = None
     inertia: FloatArray | None = None
-    lost_cable: int | None = None
+    lost_cable: int | None = None  #: The cable that is gone, from 1; the robot above still has it
+    #: (6,): That of the case's set of wrenches, without the dynamic factor [N, N·m]
     wrench_N: FloatArray | None = None
 
     @property

@@ -24,44 +24,25 @@ POSES = "poses"
 
 @dataclass(frozen=True, slots=True)
 class LogColumn:
-    """What one column of a log is to us: ``scale`` · reading + ``offset``.
+    """What one column of a log is to us: ``scale`` · reading + ``offset``."""
 
-    Parameters
-    ----------
-    name : str
-        Its name in the log.
-    target : str
-        Our name for it, see `designer.measured.assign`; ``ignore`` or ``covariate`` for none.
-    scale, offset : float
-        From the log's numbers to ours, in the unit that our name ends in.
-    has_unit : bool
-        Whether the scale is said; else a row of units in the log tells it.
-    """
-
-    name: str
+    name: str  #: Its name in the log
+    #: Our name for it, see `designer.measured.assign`; ``ignore`` or ``covariate`` for none
     target: str
+    #: From the log's numbers to ours, in the unit that our name ends in
     scale: float = 1.0
     offset: float = 0.0
-    has_unit: bool = False
+    has_unit: bool = False  #: Whether the scale is said; else a row of units in the log tells it
 
 
 @dataclass(frozen=True, slots=True)
 class LogSession:
-    """One of several times at which a machine was measured: its files, and what is its own.
+    """One of several times at which a machine was measured: its files, and what is its own."""
 
-    Parameters
-    ----------
-    file : Path
-        Table of measured poses, lengths and tensions.
-    more_files : tuple of Path
-        Tables of the same rows at other times, which are joined to it.
-    unknown : tuple of str
-        Ids of what is fitted for this session alone.
-    """
-
-    file: Path
+    file: Path  #: Table of measured poses, lengths and tensions
+    #: Tables of the same rows at other times, which are joined to it
     more_files: tuple[Path, ...] = ()
-    unknown: tuple[str, ...] = ()
+    unknown: tuple[str, ...] = ()  #: Ids of what is fitted for this session alone
 
     @property
     def file_names(self) -> str:
@@ -205,25 +186,15 @@ class Measurements(checked.Value):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Coordinates:
-    """Some coordinates of each row's pose, in the robot's frame.
+    """Some coordinates of each row's pose, in the robot's frame."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        Of the columns of ``values``, as in a log.
-    values : array (n_rows, 6)
-        Position [m], then three Euler angles [rad]; NaN where not measured.
-    axes : str
-        Axes of the angles as SciPy has them: small letters for axes that stand still, capitals for
-        such as turn with the body.
-    noise : array (6,)
-        Standard deviations [m, rad].
-    """
-
-    names: tuple[str, ...]
+    names: tuple[str, ...]  #: Of the columns of ``values``, as in a log
+    #: (n_rows, 6): Position [m], then three Euler angles [rad]; NaN where not measured
     values: FloatArray
+    #: Axes of the angles as SciPy has them: small letters for axes that stand still, capitals for
+    #: such as turn with the body
     axes: str
-    noise: FloatArray
+    noise: FloatArray  #: (6,): Standard deviations [m, rad]
 
     @property
     def is_read(self) -> BoolArray:
@@ -285,54 +256,30 @@ KINDS = (ReadingKind("length", "m", "mm", 1e3), ReadingKind("tension", "N", "N",
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Measured:
-    """Rows of measured data, in the order in which the poses were visited.
+    """Rows of measured data, in the order in which the poses were visited."""
 
-    Parameters
-    ----------
-    poses : Poses
-        Poses (n_rows,): measured, or estimated; NaN before that.
-    length_m : array (n_rows, n_cables)
-        Unstrained lengths by the winches' own scales [m]; NaN where missing.
-    tension_N : array (n_rows, n_cables)
-        Tensions at the winches [N]; NaN where missing.
-    settled : bool
-        Whether each row is a pose at rest; False for samples of a slow motion.
-    time_s, temperature_C : array (n_rows,) or None
-        Time [s] and temperature [°C], where there is such a column.
-    wind_m_per_s : array (n_rows, 3) or None
-        Wind velocity, base frame [m/s].
-    covariates : mapping of str to array (n_rows,)
-        Every other numeric column, by its own name.
-    row_numbers : array (n_rows,)
-        Number of each row in the file, the first row below the head being 1.
-    notes : tuple of str
-        What the reader of a report should know: columns that were left out, and why.
-    thinned : str
-        Which rows of a long log these are, in words; empty where they are all.
-    sha256 : str
-        Digest of the file's bytes; empty where there is no file.
-    has_poses : bool
-        Whether poses were measured; else each row's own readings have to tell its pose.
-    coordinates : Coordinates or None
-        What was measured of those poses, where they were in part.
-    session : array (n_rows,) or None
-        Number of the session of each row, from 1; None where all are of one.
-    """
-
-    poses: Poses
+    poses: Poses  #: Poses (n_rows,): measured, or estimated; NaN before that
+    #: (n_rows, n_cables): Unstrained lengths by the winches' own scales [m]; NaN where missing
     length_m: FloatArray
-    tension_N: FloatArray
-    settled: bool
+    tension_N: FloatArray  #: (n_rows, n_cables): Tensions at the winches [N]; NaN where missing
+    settled: bool  #: Whether each row is a pose at rest; False for samples of a slow motion
+    #: (n_rows,): Time [s] and temperature [°C], where there is such a column
     time_s: FloatArray | None = None
     temperature_C: FloatArray | None = None
-    wind_m_per_s: FloatArray | None = None
+    wind_m_per_s: FloatArray | None = None  #: (n_rows, 3): Wind velocity, base frame [m/s]
+    #: Every other numeric column, by its own name
     covariates: Mapping[str, FloatArray] = field(default_factory=dict)
+    #: (n_rows,): Number of each row in the file, the first row below the head being 1
     row_numbers: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    #: What the reader of a report should know: columns that were left out, and why
     notes: tuple[str, ...] = ()
-    thinned: str = ""
-    sha256: str = ""
+    thinned: str = ""  #: Which rows of a long log these are, in words; empty where they are all
+    sha256: str = ""  #: Digest of the file's bytes; empty where there is no file
+    #: Whether poses were measured; else each row's own readings have to tell its pose
     has_poses: bool = True
+    #: What was measured of those poses, where they were in part
     coordinates: Coordinates | None = None
+    #: (n_rows,): Number of the session of each row, from 1; None where all are of one
     session: IntArray | None = None
 
     @property
@@ -411,19 +358,12 @@ class Measured:
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """Standard deviation of one reading.
+    """Standard deviation of one reading."""
 
-    Parameters
-    ----------
-    length_m, tension_N : float
-        Of a length [m] and of a tension [N].
-    source : str
-        ``declared``, or how it was estimated.
-    """
-
+    #: Of a length [m] and of a tension [N]
     length_m: float
     tension_N: float
-    source: str
+    source: str  #: ``declared``, or how it was estimated
 
     def of_channels(self, n_cables: int) -> FloatArray:
         """Return it for each channel: lengths [m], then tensions [N] (2 n_cables,)."""

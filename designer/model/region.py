@@ -198,24 +198,15 @@ class Region(checked.Value, ABC):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoxFrame:
-    """Coordinates of positions in which boxes cover a region.
+    """Coordinates of positions in which boxes cover a region."""
 
-    Parameters
-    ----------
-    origin_m : array (3,)
-        Position where all coordinates are zero [m].
-    axes : array (3, 3)
-        Its change with each of them, columns.
-    low, high : array (n_boxes, 3)
-        Boxes that cover the region.
-    sides : array (n_sides, 3)
-        It is where ``sides[:, :2] @ coordinates[:2] + sides[:, 2]`` ≤ 0; none for a box.
-    """
-
-    origin_m: FloatArray
-    axes: FloatArray
+    origin_m: FloatArray  #: (3,): Position where all coordinates are zero [m]
+    axes: FloatArray  #: (3, 3): Its change with each of them, columns
+    #: (n_boxes, 3): Boxes that cover the region
     low: FloatArray
     high: FloatArray
+    #: (n_sides, 3): It is where ``sides[:, :2] @ coordinates[:2] + sides[:, 2]`` ≤ 0; none for a
+    #: box
     sides: FloatArray
 
 

@@ -455,14 +455,9 @@ class Surroundings:
 
     A design takes those that the study declares. Where data are compared with the machine, each
     row has its own, which effects on readings are given.
-
-    Parameters
-    ----------
-    temperature_C : float
-        Temperature of the cables [°C].
     """
 
-    temperature_C: float = 20.0
+    temperature_C: float = 20.0  #: Temperature of the cables [°C]
 
 
 TEMPERATE = Surroundings()
@@ -471,39 +466,23 @@ TEMPERATE = Surroundings()
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Machine:
-    """A robot with its cables, and what acts on it beside gravity.
+    """A robot with its cables, and what acts on it beside gravity."""
 
-    Parameters
-    ----------
-    robot : Robot
-        Exit points, pulleys, platform, tilt.
-    cable : Cable
-        The cable that is on the machine, the same on every winch.
-    drag_area_m2 : float
-        Drag coefficient times area of the platform, C_d A [m²].
-    flexural_rigidity_N_m2 : float
-        EI of the cable, clamped at both ends along its chord [N·m²].
-    surroundings : Surroundings
-        As the study declares them.
-    late_load_kg, late_load_from_s : float
-        Mass that is on the platform from a time on [kg], [s]; no design has it.
-    relative_mass, relative_stiffness : array (n_cables,) or None
-        Mass per length and EA of each cable over those of ``cable``; None where all are alike. No
-        design has them.
-    rope_density_kg_per_m3 : float
-        Mass of the rope on the machine over the circle of its diameter, which tells its material;
-        NaN where nothing tells it [kg/m³].
-    """
-
-    robot: Robot
-    cable: Cable
-    drag_area_m2: float = 0.0
+    robot: Robot  #: Exit points, pulleys, platform, tilt
+    cable: Cable  #: The cable that is on the machine, the same on every winch
+    drag_area_m2: float = 0.0  #: Drag coefficient times area of the platform, C_d A [m²]
+    #: EI of the cable, clamped at both ends along its chord [N·m²]
     flexural_rigidity_N_m2: float = 0.0
-    surroundings: Surroundings = TEMPERATE
+    surroundings: Surroundings = TEMPERATE  #: As the study declares them
+    #: Mass that is on the platform from a time on [kg], [s]; no design has it
     late_load_kg: float = 0.0
     late_load_from_s: float = 0.0
+    #: (n_cables,): Mass per length and EA of each cable over those of ``cable``; None where all are
+    #: alike. No design has them.
     relative_mass: FloatArray | None = None
     relative_stiffness: FloatArray | None = None
+    #: Mass of the rope on the machine over the circle of its diameter, which tells its material;
+    #: NaN where nothing tells it [kg/m³]
     rope_density_kg_per_m3: float = math.nan
 
     @property

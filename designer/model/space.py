@@ -58,16 +58,10 @@ class Toward(Following):
     The rotation vector is along :math:`a \\times d`, of the angle between the axis a and the
     direction d from the position to the point. Where the point is straight behind, it is half a
     turn about any axis across; nothing is turned where the position is the point itself.
-
-    Parameters
-    ----------
-    point_m : array (3,)
-        What it points at, world frame [m].
-    axis : array (3,)
-        Body frame; its length does not count.
     """
 
-    point_m: checked.Vector
+    point_m: checked.Vector  #: (3,): What it points at, world frame [m]
+    #: (3,): Body frame; its length does not count
     axis: checked.Vector = field(default_factory=lambda: frozen_array([0.0, 0.0, 1.0]))
 
     def __post_init__(self) -> None:
@@ -99,20 +93,11 @@ class TurnTable(Following):
 
     By :math:`\\sum_i w_i\\,|x - x_i|` and a constant, the sum that passes through all rows and, on
     a line, is linear from row to row; each component stays between its least and largest value.
-
-    Parameters
-    ----------
-    positions_m : array (n_rows, 3)
-        Where [m].
-    rotation_vectors_rad : array (n_rows, 3)
-        Turned how [rad].
-    name : str
-        What the reader knows it by.
     """
 
-    positions_m: checked.Points
-    rotation_vectors_rad: checked.Points
-    name: str = field(default="a table", compare=False)
+    positions_m: checked.Points  #: (n_rows, 3): Where [m]
+    rotation_vectors_rad: checked.Points  #: (n_rows, 3): Turned how [rad]
+    name: str = field(default="a table", compare=False)  #: What the reader knows it by
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
@@ -146,17 +131,11 @@ class TurnTable(Following):
 
 @dataclass(frozen=True, eq=False)
 class EachPose(Following):
-    """The orientations of listed poses, each at its own position.
+    """The orientations of listed poses, each at its own position."""
 
-    Parameters
-    ----------
-    positions_m : array (n_positions, 3)
-        Positions, no two alike [m].
-    rotation_vectors_rad : array (n_positions, count, 3)
-        Those asked for at each, repeated where a position has fewer than another [rad].
-    """
-
-    positions_m: checked.Points
+    positions_m: checked.Points  #: (n_positions, 3): Positions, no two alike [m]
+    #: (n_positions, count, 3): Those asked for at each, repeated where a position has fewer than
+    #: another [rad]
     rotation_vectors_rad: FloatArray
 
     @classmethod

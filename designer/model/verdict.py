@@ -33,51 +33,30 @@ class Answer(StrEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Requirement:
-    """One thing that a study asks for, in one load case, where it comes nearest to failing.
+    """One thing that a study asks for, in one load case, where it comes nearest to failing."""
 
-    Parameters
-    ----------
-    id : str
-        Its name in result files.
-    title, formula, source : str
-        What is required, how it is evaluated, and by which clause or field of the study.
-    state : State
-        Whether it holds.
-    load_case : str
-        In which load case; ``all`` for what no load case changes.
-    demand, capacity : float
-        What is required, and what there is [unit]; NaN where there is no such figure.
-    unit : str
-        SI; empty for a ratio.
-    utilisation : float
-        Up to 1 where it holds; NaN where the two figures make no ratio.
-    cable : int or None
-        The cable, from 1.
-    place : array (n_coordinates,) or None
-        Where the platform is, see `designer.model.space` [m, rad].
-    loaded : Loaded or None
-        Robot and cable under the load case, in its direction of wind and inertia force.
-    remark : str
-        What the reader must know beside the figures; empty for nothing.
-    """
-
-    id: str
+    id: str  #: Its name in result files
+    #: What is required, how it is evaluated, and by which clause or field of the study
     title: str = field(metadata={"json": None})
     formula: str
     source: str
-    state: State
-    load_case: str
+    state: State  #: Whether it holds
+    load_case: str  #: In which load case; ``all`` for what no load case changes
+    #: What is required, and what there is [unit]; NaN where there is no such figure
     demand: float = math.nan
     capacity: float = math.nan
-    unit: str = ""
+    unit: str = ""  #: SI; empty for a ratio
+    #: Up to 1 where it holds; NaN where the two figures make no ratio
     utilisation: float = math.nan
-    cable: int | None = None
+    cable: int | None = None  #: The cable, from 1
+    #: (n_coordinates,): Where the platform is, see `designer.model.space` [m, rad]
     place: FloatArray | None = field(default=None, metadata={"json": named_place})
+    #: Robot and cable under the load case, in its direction of wind and inertia force
     loaded: Loaded | None = field(
         default=None,
         metadata={"json": lambda loaded: {"direction": (loaded and loaded.words) or None}},
     )
-    remark: str = ""
+    remark: str = ""  #: What the reader must know beside the figures; empty for nothing
 
     also_in_files: ClassVar = ("holds",)
 

@@ -29,9 +29,15 @@ from designer.documents.document import (
     path_text,
     read_document,
 )
-from designer.documents.fields import FreeMapping, QuantityField, Text, WholeNumber
+from designer.documents.fields import (
+    FreeMapping,
+    QuantityField,
+    Section,
+    Text,
+    WholeNumber,
+    schema_faults,
+)
 from designer.documents.opened import read_bytes
-from designer.documents.section import Section, schema_faults
 from designer.errors import Fault, InputError
 from designer.io.config.schema import StudySection
 from designer.model.region import Prism, Rectangle

@@ -13,8 +13,7 @@ from grade_samples import family_grade
 from scipy.optimize import brentq
 
 from designer.effects.design import AsBuilt
-from designer.grades.grade import Grade
-from designer.grades.parts import RelativeStiffness
+from designer.grades.grade import Grade, RelativeStiffness
 from designer.model.cable import Cable, Stiffening
 from designer.model.load_case import LoadCase, Wind
 from designer.model.region import PointList, Prism
