@@ -13,13 +13,12 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 from pydantic import BaseModel
 
 from designer.documents.document import Key, Node, path_text
-from designer.documents.fields import QuantityField, WholeNumber, reader_in
-from designer.documents.section import words_at
+from designer.documents.fields import QuantityField, WholeNumber, reader_in, words_at
 from designer.effects.effect import Effect
 from designer.explore.sliders import Sizes, count_slider, slider
 from designer.io.config.effects import field_of, read_effects
+from designer.io.config.machine import FORMS
 from designer.io.config.reader import field_node
-from designer.io.config.regions import FORMS
 from designer.io.config.schema import StudySection
 from designer.units import FORCE, MOMENT, NUMBER, Dimension, format_SI, read_quantity
 

@@ -12,8 +12,8 @@ from designer.explore.quantities import BY_KEY, CHEAP
 from designer.explore.question import Question, Rope, RopePerCable
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable, Cables
 from designer.model.load_case import STATIC
+from designer.model.polygon import every_second
 from designer.model.region import Region
-from designer.model.rings import every_second
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace

@@ -14,7 +14,7 @@ from designer.diagnosis.problem import Problem, channel_names
 from designer.explore.question import Question
 from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
-from designer.model.measured_data import Measured
+from designer.model.measurements import Measured
 
 
 @dataclass(frozen=True, slots=True, eq=False)

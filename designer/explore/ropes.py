@@ -12,7 +12,7 @@ from designer.analysis.requirements import Terms
 from designer.arrays import FloatArray
 from designer.explore.question import Question, Rope, RopePerCable
 from designer.grades.grade import Grade, Size
-from designer.model.requirement import Answer, Requirement
+from designer.model.verdict import Answer, Requirement
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Proof
 from designer.selection.candidate import Candidate

@@ -16,7 +16,7 @@ from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable, SizeUnits
 from designer.model.load_case import STATIC
-from designer.model.requirement import Requirement
+from designer.model.verdict import Requirement
 from designer.selection.cases import CaseResult, governing
 from designer.selection.efficiency import Allowance
 from designer.selection.objectives import UNKNOWN, CandidateFigures

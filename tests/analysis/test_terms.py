@@ -21,7 +21,7 @@ from designer.grades.grade import Grade, Modulus, Reference, RopeMaterial, Size
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.io.config import read_study
 from designer.model.cable import Trust
-from designer.model.requirement import Answer
+from designer.model.verdict import Answer
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
 from designer.report.render import rendered

@@ -19,8 +19,7 @@ from typer.testing import CliRunner, Result
 from designer.cli import catalog_new, terminal
 from designer.cli.commands import app
 from designer.errors import InputError
-from designer.grades.files import read_grade
-from designer.grades.registry import load_catalogue
+from designer.grades.registry import load_catalogue, read_grade
 from designer.io import pdf_table
 from designer.io.maker_table import known_unit, read_maker_table
 

@@ -19,7 +19,7 @@ from designer.explore.desktop.widgets import (
     restyle,
     result,
 )
-from designer.model.requirement import Answer, Requirement, State
+from designer.model.verdict import Answer, Requirement, State
 from designer.report import format as fmt
 from designer.report.phrases import STATES, with_unit
 
