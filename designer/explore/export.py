@@ -12,11 +12,17 @@ import numpy as np
 
 from designer.documents.plain import csv_text
 from designer.errors import Fault, InputError, NothingToExportError, OutputError
-from designer.explore.here import CableHere, here
-from designer.explore.map import MapAnswer, map_answer
+from designer.explore.answers import (
+    CableHere,
+    MapAnswer,
+    RopeRow,
+    Ropes,
+    here,
+    map_answer,
+    quick_ropes,
+)
 from designer.explore.question import Question
-from designer.explore.reading import text_of
-from designer.explore.ropes import RopeRow, Ropes, quick_ropes
+from designer.explore.session import text_of
 from designer.io.output import file_names, output_folder, write_file
 from designer.progress import Reporter
 
@@ -84,6 +90,8 @@ def export(
 ) -> Written:
     """Write files, whole or not at all.
 
+    Raises DesignerError if they cannot be written, or there is nothing to write.
+
     Parameters
     ----------
     content : str
@@ -95,11 +103,6 @@ def export(
         For ``tables``: the ropes as they are shown.
     poses : Path, optional
         For ``lengths``: the table of poses; without it those along the path of the study.
-
-    Raises
-    ------
-    DesignerError
-        If they cannot be written, or there is nothing to write.
     """
     target = Path(target)
     if content == "report":
@@ -142,7 +145,6 @@ def _for_program(question: Question, reporter: Reporter, name: str, target: Path
 
 
 def _report(question: Question, reporter: Reporter, folder: Path) -> Written:
-    """Write the report, by the pipeline of the command."""
     from designer.analysis.analyse import analyse
     from designer.report.figures.opengl import begin_probe
     from designer.report.render import REPORT_FILES, write_report_files
@@ -183,7 +185,6 @@ def map_columns(chart: MapAnswer) -> dict[str, Any]:
 
 
 def rope_table(ropes: Ropes) -> str:
-    """Return what becomes of each rope as the text of a CSV."""
     return _csv([*_ROPE_COLUMNS, "x_m", "y_m", "z_m"], map(_rope, ropes.rows))
 
 
@@ -226,36 +227,19 @@ def _vtk(question: Question, target: Path) -> Written:
 
 @dataclass(frozen=True, slots=True)
 class OptimisedStudy:
-    """What an optimisation came to, for the window.
+    """What an optimisation came to, for the window."""
 
-    Parameters
-    ----------
-    headline : str
-        The objective before and after, or that nothing better was found.
-    variables : tuple of str
-        What was chosen, each with its value before and after.
-    trust : tuple of str
-        How far it is to be believed, a sentence each.
-    given_text : str
-        The study as the search had it.
-    text : str or None
-        The study with the better design; None where none was found.
-    """
-
-    headline: str
-    variables: tuple[str, ...]
-    trust: tuple[str, ...]
-    given_text: str
-    text: str | None
+    headline: str  #: The objective before and after, or that nothing better was found
+    variables: tuple[str, ...]  #: What was chosen, each with its value before and after
+    trust: tuple[str, ...]  #: How far it is to be believed, a sentence each
+    given_text: str  #: The study as the search had it
+    text: str | None  #: The study with the better design; None where none was found
 
 
 def optimised_study(question: Question, reporter: Reporter, *, plan: Path) -> OptimisedStudy:
     """Search for a better design of the study in the window, as `designer optimise` does.
 
-    Raises
-    ------
-    InputError
-        If the plan is faulty, or is of another study, or the study is not saved.
+    Raises InputError if the plan is faulty, or is of another study, or the study is not saved.
     """
     from designer.optimum.optimise import optimum_of
     from designer.optimum.plan import read_optimisation
@@ -279,13 +263,8 @@ def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: P
     Writes the store ``target`` and a folder with its report beside it. A sweep that was given up
     goes on with the same plan and store.
 
-    Raises
-    ------
-    InputError
-        If the plan is faulty, or is of another study, or the study is not saved; or if something
-        else is at the target.
-    OutputError
-        If a file cannot be written.
+    Raises InputError if the plan is faulty, or is of another study, or the study is not saved; or
+    if something else is at the target; OutputError if a file cannot be written.
     """
     from designer.report.sweep import write_sweep
     from designer.sweeps import run as running

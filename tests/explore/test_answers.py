@@ -13,12 +13,19 @@ import pytest
 from designer.analysis.analyse import Analysis, analyse
 from designer.analysis.pose import analyse_pose
 from designer.cli.commands import main
+from designer.explore.answers import (
+    full_ropes,
+    here,
+    map_answer,
+    quick_ropes,
+    ropes_of,
+    unserved,
+    values_at,
+    worst_answer,
+)
 from designer.explore.export import rope_table
-from designer.explore.here import here
-from designer.explore.map import map_answer, unserved, values_at, worst_answer
 from designer.explore.quantities import CHEAP, QUANTITIES, category_labels
 from designer.explore.question import Question, Rope, RopePerCable
-from designer.explore.ropes import full_ropes, quick_ropes, ropes_of
 from designer.explore.session import Session
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict

@@ -7,11 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from designer.explore.compare import Pin, compare
-from designer.explore.here import here
-from designer.explore.map import map_answer, worst_answer
+from designer.explore.answers import (
+    Pin,
+    compare,
+    full_ropes,
+    here,
+    map_answer,
+    quick_ropes,
+    worst_answer,
+)
 from designer.explore.question import Rope
-from designer.explore.ropes import full_ropes, quick_ropes
 from designer.explore.session import Session
 
 WIRE = "unirope-7x19-galvanised"

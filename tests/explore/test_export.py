@@ -13,9 +13,8 @@ import pytest
 
 from designer.analysis.analyse import analyse
 from designer.errors import DesignerError, InputError, OutputError
+from designer.explore.answers import here, map_answer
 from designer.explore.export import COLUMNS, What, export, map_columns
-from designer.explore.here import here
-from designer.explore.map import map_answer
 from designer.explore.question import Question, Rope
 from designer.explore.session import Session
 from designer.exports.formats import FORMATS

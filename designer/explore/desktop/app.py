@@ -10,7 +10,7 @@ from pathlib import Path
 from PySide6.QtCore import QSocketNotifier, QTimer
 from PySide6.QtWidgets import QApplication
 
-from designer.explore.desktop.settings import Settings
+from designer.explore.desktop.files import Settings
 from designer.explore.desktop.window import Window
 
 _LONGEST_S = 300
@@ -18,7 +18,6 @@ _LONGEST_S = 300
 
 
 def application() -> QApplication:
-    """Return the one application of this process."""
     app = QApplication.instance()
     if isinstance(app, QApplication):
         return app

@@ -6,8 +6,7 @@ import subprocess
 import sys
 from importlib.util import find_spec
 
-_LONGEST_S = 60.0
-"""A forwarded display is slow, one that never answers must not hold up for ever."""
+_LONGEST_S = 60.0  #: A forwarded display is slow, one that never answers must not hold up for ever
 _OPEN = """
 import sys
 from PySide6.QtGui import QGuiApplication, QOffscreenSurface, QOpenGLContext

@@ -1,22 +1,20 @@
-"""Files of the window: studies opened, saved and left, robots imported, plans, and exports.
+"""Files of the window: what is remembered, studies opened, saved and left, imports, plans, exports.
 
-What is not saved is asked about, never lost.
-"""
+What is not saved is asked about, never lost."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
-from PySide6.QtCore import QObject, QTimer, QUrl, Signal
+from PySide6.QtCore import QByteArray, QObject, QSettings, QTimer, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from designer.errors import DesignerError
 from designer.explore.desktop.live_session import LONG, NAMES, LiveSession
-from designer.explore.desktop.settings import Settings
 from designer.report import format as fmt
 from designer.resources import example_file
 
@@ -25,13 +23,65 @@ if TYPE_CHECKING:
     from designer.explore.session import Session
     from designer.plugins import Plugins
 
+MOST_RECENT = 8
+
+
+class Settings:
+    """What is remembered, by name; in the user's own settings, or in a file (of a test)."""
+
+    def __init__(self, file: Path | None = None) -> None:
+        if file is None:
+            self._store = QSettings("cdpr-designer", "explore")
+        else:
+            self._store = QSettings(str(file), QSettings.Format.IniFormat)
+
+    @property
+    def theme(self) -> str:
+        """One of `widgets.THEME_CHOICES`."""
+        return str(self._store.value("theme", "system"))
+
+    @theme.setter
+    def theme(self, choice: str) -> None:
+        self._store.setValue("theme", choice)
+
+    @property
+    def hidden_panels(self) -> tuple[str, ...]:
+        names = self._store.value("hidden panels", [])
+        return (names,) if isinstance(names, str) else tuple(cast("list[str]", names or []))
+
+    @hidden_panels.setter
+    def hidden_panels(self, names: Iterable[str]) -> None:
+        self._store.setValue("hidden panels", list(names))
+
+    @property
+    def recent(self) -> tuple[Path, ...]:
+        """Studies that were open, the last one first; only those that are still there."""
+        stored = self._store.value("recent", [])
+        names = [stored] if isinstance(stored, str) else cast("list[str]", stored or [])
+        return tuple(path for path in map(Path, names) if path.is_file())
+
+    def remember(self, study: Path) -> None:
+        """Put a study in front of the recent ones."""
+        path = study.resolve()
+        earlier = [study_file for study_file in self.recent if study_file != path]
+        names = [str(study_file) for study_file in [path, *earlier][:MOST_RECENT]]
+        self._store.setValue("recent", names)
+
+    def bytes_of(self, name: str) -> QByteArray:
+        """Return a state of Qt that was kept under this name; empty where none was."""
+        state = self._store.value(name)
+        return state if isinstance(state, QByteArray) else QByteArray()
+
+    def keep_bytes(self, name: str, state: QByteArray) -> None:
+        self._store.setValue(name, state)
+
+
 _STUDIES = "Studies (*.yaml *.yml);;All files (*)"
 _ROBOTS = "Robots of CASPR and WireX (*.xml *.wcrfx);;All files (*)"
 _PLANS = "Plans (*.yaml *.yml);;All files (*)"
 _POSES = "Poses (*.csv);;All files (*)"
 _TITLE = "cdpr-designer"
-_STARTER = "fast"
-"""The study that has a comment to every field."""
+_STARTER = "fast"  #: The study that has a comment to every field
 _EXPORTS: dict[What, tuple[str, str, str]] = {
     "report": ("Folder for the report", "-report", ""),
     "picture": ("Picture of the scene", ".png", "Pictures (*.png)"),
@@ -66,10 +116,8 @@ class Files(QObject):
 
     notice = Signal(str, tuple)
     """A line that asks for attention, and the names of its buttons; no line for no text."""
-    opening = Signal(str)
-    """A study of this name is about to be opened."""
-    not_opened = Signal()
-    """A study could not be opened, and may be gone."""
+    opening = Signal(str)  #: A study of this name is about to be opened
+    not_opened = Signal()  #: A study could not be opened, and may be gone
 
     def __init__(
         self, parent: QWidget, live: LiveSession, settings: Settings, *, with_plugins: bool
@@ -99,7 +147,6 @@ class Files(QObject):
         self.open(example_file(_STARTER))
 
     def ask_and_open(self) -> None:
-        """Let the user look for a study."""
         name, _ = QFileDialog.getOpenFileName(self._parent, "Open a study", "", _STUDIES)
         if name:
             self.open(Path(name))
@@ -135,7 +182,6 @@ class Files(QObject):
         self._live.open(opened[0])
 
     def close(self) -> None:
-        """Go back to the start page."""
         if self.may_leave():
             self._live.open(None)
 
@@ -171,7 +217,6 @@ class Files(QObject):
         return True
 
     def reload(self) -> None:
-        """Take what the file holds now."""
         session = self._live.session
         if session is not None:
             try:
@@ -217,7 +262,6 @@ class Files(QObject):
         return answer == button.Yes
 
     def _may_drop_changes(self) -> bool:
-        """Ask what becomes of changes that are not saved."""
         session = self._live.session
         if session is None or not session.is_modified:
             return True
@@ -245,7 +289,6 @@ class Files(QObject):
             self.notice.emit("", ())
 
     def answer_notice(self, button: str) -> None:
-        """Do what a button of the notice says."""
         self.notice.emit("", ())
         if button == "Reload":
             self.reload()
@@ -284,7 +327,6 @@ class Files(QObject):
         return Path(name) if name else None
 
     def _show_optimised(self, optimised: OptimisedStudy | None) -> None:
-        """Say what the search came to, and offer the better design."""
         self._optimised = optimised
         if optimised is None:
             return
@@ -343,7 +385,6 @@ class Files(QObject):
         return target if name else None
 
     def _show_written(self, written: Written | None) -> None:
-        """Say what was written, and offer to open it."""
         self._written = () if written is None else written.files
         if written is None:
             self.notice.emit("", ())
@@ -357,10 +398,7 @@ class Files(QObject):
 def _import(source: Path, target: Path, plugins: Plugins) -> None:
     """Write a robot of another program as a study; what its file does not say is to be filled in.
 
-    Raises
-    ------
-    DesignerError
-        If there is no such robot in the file, or the study cannot be written.
+    Raises DesignerError if there is no such robot in the file, or the study cannot be written.
     """
     from designer.foreign.study import ImportAnswers, load_importers, read_foreign, study_text
     from designer.io.output import write_file

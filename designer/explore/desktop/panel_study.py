@@ -35,12 +35,10 @@ from designer.report import format as fmt
 if TYPE_CHECKING:
     from designer.errors import Fault
     from designer.explore.fields import Field
-    from designer.explore.reading import Rejected
+    from designer.explore.session import Rejected
 
-_STEPS = 1000
-"""Finer than a pixel of the slider."""
-_BESIDE = 75
-"""Width of a name that has room beside its entry in a narrow panel, also in bold [px]."""
+_STEPS = 1000  #: Finer than a pixel of the slider
+_BESIDE = 75  #: Width of a name that has room beside its entry in a narrow panel, also in bold [px]
 _OF_MANY = {"robot.anchors": "Exit points", "robot.platform.attachments": "Attachments"}
 """Lists that are sections of their own here, folded: they rarely vary."""
 _FOLDED = frozenset(_OF_MANY.values())
@@ -207,7 +205,6 @@ class FieldRow(QWidget):
         return self.slider
 
     def show_field(self, field: Field, is_changed: bool) -> None:
-        """Show the field as it stands."""
         self.field, self.is_changed = field, is_changed
         font = self._label.font()
         font.setBold(is_changed)
@@ -234,7 +231,6 @@ class FieldRow(QWidget):
             self.choices.setCurrentText(refused.text)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Escape in the entry gives up what was entered."""
         if event.type() == QEvent.Type.KeyPress and event.key() == Qt.Key.Key_Escape:  # type: ignore[attr-defined]
             self.entry.setModified(False)
             self.entry.setText(self.field.text)
@@ -282,7 +278,6 @@ class FieldRow(QWidget):
 
 
 def _group(field: Field) -> str:
-    """The section that a field is shown in."""
     return _OF_MANY.get(field.path.split("[")[0], field.group)
 
 
@@ -309,5 +304,4 @@ class _Slider(QSlider):
         self.is_put = False
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Leave the wheel to the list."""
         event.ignore()

@@ -12,10 +12,9 @@ from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QResizeEvent, QStandardItemModel
 from PySide6.QtWidgets import QBoxLayout, QComboBox, QHBoxLayout, QSlider, QVBoxLayout, QWidget
 
-from designer.explore.desktop.actors import Hit
 from designer.explore.desktop.live_session import LiveSession
-from designer.explore.desktop.painting import Painting
 from designer.explore.desktop.scene import SceneView
+from designer.explore.desktop.stage import Hit, Painting
 from designer.explore.desktop.widgets import DropDown, Notice, beside, check_box, fill, named
 from designer.explore.quantities import BY_KEY, QUANTITIES, category_labels
 from designer.model.verdict import Verdict
@@ -27,8 +26,7 @@ from designer.report.figures.view import clear_azimuth_rad, facing_azimuth_rad, 
 
 if TYPE_CHECKING:
     from designer.arrays import FloatArray
-    from designer.explore.here import Here
-    from designer.explore.map import MapAnswer, WorstAnswer
+    from designer.explore.answers import Here, MapAnswer, WorstAnswer
     from designer.explore.measurements import Residuals
     from designer.study import Study
 
@@ -36,21 +34,17 @@ FACTORS = (1, 2, 5, 10, 20, 50)
 _ELEVATION_RAD = float(np.radians(28.0))
 """Floor, walls and top of a region are all seen from there."""
 _FRAME_MS = 40
-_LONGEST_S = 20.0
-"""A path that takes longer is played faster."""
+_LONGEST_S = 20.0  #: A path that takes longer is played faster
 _MODE_SHARE, _MODE_RAD = 0.04, 0.25
 """How far a mode is drawn to move, over the size of the scene, and how far to turn."""
-_BAR_PX, _ONE_ROW_PX = 372, 700
-"""The narrowest bar, and how narrow it is in two rows."""
-_BRIGHTEST = 5.0
-"""Residual of the brightest rows, in units of noise: by chance none is as large."""
+_BAR_PX, _ONE_ROW_PX = 372, 700  #: The narrowest bar, and how narrow it is in two rows
+_BRIGHTEST = 5.0  #: Residual of the brightest rows, in units of noise: by chance none is as large
 
 
 class WorkPage(QWidget):
     """Scene, the bar above it, the slider of the slice, and a notice when there is one."""
 
-    notice_answered = Signal(str)
-    """The name of the button of the notice that was pressed."""
+    notice_answered = Signal(str)  #: The name of the button of the notice that was pressed
 
     def __init__(self, live: LiveSession) -> None:
         super().__init__()
@@ -167,7 +161,6 @@ class WorkPage(QWidget):
         return bar
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Break the bar where it has no room in a row."""
         direction = QBoxLayout.Direction
         is_wide = self.width() >= _ONE_ROW_PX
         self._rows.setDirection(direction.LeftToRight if is_wide else direction.TopToBottom)
@@ -186,14 +179,12 @@ class WorkPage(QWidget):
         self._live.move_slice(self.height_slider.value() / 100.0, moving)
 
     def follow_theme(self) -> None:
-        """Take the colours of the theme."""
         self.scene.follow_theme()
         self._show_map()
 
     # What is shown
 
     def _follow_study(self) -> None:
-        """Show the study, and whether its map can be of a rope."""
         study, is_first = self._live.study, self._live.question is None
         if study is not None and (study is not self._study or is_first):
             self._show_study(study, afresh=is_first)
@@ -230,7 +221,6 @@ class WorkPage(QWidget):
                 self._show_place()
 
     def _show_here(self, answer: Here | None) -> None:
-        """Show the cables in their true shape."""
         self._pose_answer = answer
         self._show_place()
 
@@ -311,7 +301,6 @@ class WorkPage(QWidget):
         self._show_map()
 
     def _show_age(self) -> None:
-        """Show in grey what is of an older state of the study."""
         outdated, overlay = self._live.outdated, self.scene.overlay
         if ("map" in outdated) != self._is_old:
             self._is_old = "map" in outdated
@@ -321,7 +310,6 @@ class WorkPage(QWidget):
             overlay.update()
 
     def _show_worst(self, worst: WorstAnswer | None) -> None:
-        """Mark the worst pose."""
         marked = None
         if worst is not None and worst.place is not None:
             marked = (worst.place[:3], "worst pose")

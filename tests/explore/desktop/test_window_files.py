@@ -32,7 +32,7 @@ def test_the_start_page_shows_shipped_and_recent_studies(empty: Driver, tmp_path
 _START = """
 import sys, time
 from designer.explore.desktop.app import application
-from designer.explore.desktop.settings import Settings
+from designer.explore.desktop.files import Settings
 from designer.explore.desktop.window import Window
 from pathlib import Path
 app = application()
