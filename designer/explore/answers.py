@@ -1,6 +1,9 @@
 """What is known of a state of the window: the pose, the map, the ropes; and against another state.
 
-Nothing here knows of Qt. Each kind of question (see `designer.explore.worker`) has its function."""
+Nothing here knows of Qt. Each kind of question (`designer.explore.question`) has its function:
+`pose_answer`, `map_answer`, `worst_answer`, `quick_ropes` at a part of the samples, `full_ropes` as
+in the report. A state that is pinned as A is compared with the present one by `compare`.
+"""
 
 from __future__ import annotations
 
@@ -55,9 +58,18 @@ from designer.workspace.demand import demand_of, in_worst_turn, is_left_out, siz
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import WorkspaceMap, map_workspace
 
+#: Places in one call of the solver: what a pose that is waited for has to wait at most
+_BATCH = 2**12
+MAX_POINTS = 3000  #: Of a list of points: as many as are told apart on a screen
+_RINGS, _SPOKES, _ROWS = 45, 120, 24  #: Of a fine grid: its faces are a few pixels wide
+_QUICK_SAMPLES = 1500
+Values = Mapping[str, FloatArray]  #: By the key of the quantity, SI; NaN where a place has none
+
+# The pose
+
 
 @dataclass(frozen=True, slots=True)
-class CableHere:
+class CableState:
     """One cable in this pose."""
 
     number: int  #: From 1, in the order of the anchors
@@ -75,13 +87,13 @@ class CableHere:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Here:
+class PoseAnswer:
     """What is known of one pose."""
 
     verdict: Verdict  #: What became of it, with the rope or, without one, with the thinnest cable
     #: What the cables are of; None for the thinnest cable that holds the pose
     rope: Rope | RopePerCable | None
-    cables: tuple[CableHere, ...]  #: Empty unless solved
+    cables: tuple[CableState, ...]  #: Empty unless solved
     #: (n_cables, 81, 3) their true shape, from the exit points to the platform [m]; None unless
     #: solved
     curves_m: FloatArray | None
@@ -143,11 +155,11 @@ class Here:
         return np.asarray(straight + factor * (self.curves_m - straight))
 
 
-def here(question: Question, *, settled: bool = False) -> Here:
+def pose_answer(question: Question, *, settled: bool = False) -> PoseAnswer:
     """Solve the pose of a question.
 
-    Where it has ``settled``, it is also searched for other places where the platform could rest on
-    the same lengths, which takes longer.
+    Where it has ``settled``, other places where the platform could rest on the same lengths are
+    searched for as well, which takes longer.
     """
     robot, pose, rope = question.robot, question.pose, question.cable
     sizing = size_poses(robot, pose, question.material)
@@ -157,10 +169,25 @@ def here(question: Question, *, settled: bool = False) -> Here:
     elif statics.is_solved:
         cable = question.material.cable(float(sizing.diameter_m))
     verdict = Verdict(int(statics.verdict))
-    stays, stability, stiffness = _stability(question, statics, cable, settled)
+    stays, stability, stiffness = None, "", np.nan
+    if verdict is Verdict.SOLVED and cable is not None:
+        softness = float(largest_displacement_m_per_N(statics))
+        stays = bool(np.isfinite(softness))  # it is NaN where the balance is not stable
+        stiffness = 1.0 / softness if stays else 0.0
+        stability = "The platform rests here." if stays else "The platform would not stay here."
+        if settled:
+            rest = resting_places(robot, pose, cable, statics.length_m)
+            stays, stability = rest.is_stable, rest.sentence
+    cautions = (
+        ["At rest, without the load cases of the study."] if question.study.load_cases else []
+    )
+    if statics.is_solved and statics.hangs_below:
+        numbers = ", ".join(str(k + 1) for k in np.flatnonzero(statics.hanging_cables))
+        hang = f"s {numbers} hang" if "," in numbers else f" {numbers} hangs"
+        cautions.append(f"Cable{hang} below the platform.")
     allowable = np.nan if cable is None else cable.allowable_tension_N
     utilisation = np.asarray(statics.cable_tension_N / allowable)
-    return Here(
+    return PoseAnswer(
         verdict=verdict,
         rope=question.rope,
         cables=_cables(statics, utilisation) if verdict is Verdict.SOLVED else (),
@@ -172,13 +199,13 @@ def here(question: Question, *, settled: bool = False) -> Here:
         stiffness_N_per_m=stiffness,
         is_stable=stays,
         stability=stability,
-        caution=_caution(question, statics),
+        caution=" ".join(cautions),
         outside=question.outside,
         statics=statics,
     )
 
 
-def _cables(statics: Statics, utilisation: FloatArray) -> tuple[CableHere, ...]:
+def _cables(statics: Statics, utilisation: FloatArray) -> tuple[CableState, ...]:
     figures = {
         "length_m": statics.length_m,
         "chord_m": statics.geometry().chord_m,
@@ -190,7 +217,7 @@ def _cables(statics: Statics, utilisation: FloatArray) -> tuple[CableHere, ...]:
         "utilisation": utilisation,
     }
     return tuple(
-        CableHere(
+        CableState(
             number=k + 1,
             hangs_below=bool(hangs),
             **{name: float(values[k]) for name, values in figures.items()},
@@ -199,38 +226,7 @@ def _cables(statics: Statics, utilisation: FloatArray) -> tuple[CableHere, ...]:
     )
 
 
-def _stability(
-    question: Question, statics: Statics, cable: Cable | Cables | None, settled: bool
-) -> tuple[bool | None, str, float]:
-    """Return whether the platform stays, in a sentence, and the stiffness."""
-    if not statics.is_solved or cable is None:
-        return None, "", np.nan
-    softness = float(largest_displacement_m_per_N(statics))
-    stays = bool(np.isfinite(softness))  # it is NaN where the balance is not stable
-    stiffness = 1.0 / softness if stays else 0.0
-    if settled:
-        rest = resting_places(question.robot, question.pose, cable, statics.length_m)
-        return rest.is_stable, rest.sentence, stiffness
-    words = "The platform rests here." if stays else "The platform would not stay here."
-    return stays, words, stiffness
-
-
-def _caution(question: Question, statics: Statics) -> str:
-    sentences = []
-    if question.study.load_cases:
-        sentences.append("At rest, without the load cases of the study.")
-    if statics.is_solved and statics.hangs_below:
-        numbers = [str(k + 1) for k in np.flatnonzero(statics.hanging_cables)]
-        hang = "s " + ", ".join(numbers) + " hang" if len(numbers) > 1 else f" {numbers[0]} hangs"
-        sentences.append(f"Cable{hang} below the platform.")
-    return " ".join(sentences)
-
-
-_PIECE = 2**12
-"""Places in one call of the solver: what a pose that is waited for has to wait at most."""
-_MOST_POINTS = 3000  #: Of a list of points: as many as are told apart on a screen
-_RINGS, _SPOKES, _ROWS = 45, 120, 24  #: Of a fine grid: its faces are a few pixels wide
-Values = Mapping[str, FloatArray]  #: By the key of the quantity, SI; NaN where a place has none
+# The map
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -286,8 +282,8 @@ def map_grids(region: Region, slice_share: float, *, fine: bool) -> Mapping[str,
     """
     grids = dict(region.outside_m(_RINGS, _SPOKES, _ROWS))
     if not grids:
-        points = np.concatenate([*region.samples_m(_MOST_POINTS, "grid", 0)])
-        return {"points": points[:: -(-len(points) // _MOST_POINTS)][:, None]}
+        points = np.concatenate([*region.samples_m(MAX_POINTS, "grid", 0)])
+        return {"points": points[:: -(-len(points) // MAX_POINTS)][:, None]}
     section = region.section_m(slice_share, _RINGS, _SPOKES)
     if section is not None and not region.is_upright:
         grids["slice"] = section
@@ -302,17 +298,10 @@ def map_answer(
     quantities: frozenset[str] = CHEAP,
     against: Question | None = None,
 ) -> MapAnswer:
-    """Compute the map.
+    """Compute the map on `map_grids`, where it is asked for ``against`` another state as well.
 
-    Parameters
-    ----------
-    fine, slice_share
-        Of the grids, see `map_grids`.
-    quantities : frozenset of str
-        Keys of what is asked for, with ``unserved`` among them; what costs nothing more is there
-        as well. The less, the quicker.
-    against : Question, optional
-        A state to compare with, at the same positions.
+    ``quantities`` are keys of what is needed, with ``unserved`` among them: the less, the quicker;
+    what costs nothing more is there anyway.
     """
     if question.workspace is None:
         return MapAnswer({}, {}, question.rope)
@@ -329,33 +318,32 @@ def values_at(
     question: Question, workspace: Workspace, positions_m: FloatArray, keys: frozenset[str]
 ) -> Values:
     """Return the quantities ``keys`` at positions (n, 3), each (n,); see `MapAnswer`."""
-    step = max(_PIECE // workspace.orientations.count, 1)
+    step = max(_BATCH // workspace.orientations.count, 1)
     pieces = [
         _values(question, workspace, positions_m[at : at + step], keys)
         for at in range(0, len(positions_m), step)
     ]
-    found = {key: np.concatenate([piece[key] for piece in pieces]) for key in pieces[0]}
+    values = {key: np.concatenate([piece[key] for piece in pieces]) for key in pieces[0]}
     if "unserved" in keys:
-        proved = found["verdict"] == Verdict.OUTSIDE_HULL
-        left = unserved(question, workspace, positions_m[~proved])
-        found["unserved"] = np.ones(len(positions_m))
-        found["unserved"][~proved] = left
-    return found
+        is_open = values["verdict"] != Verdict.OUTSIDE_HULL  # else no rope can
+        values["unserved"] = np.ones(len(positions_m))
+        values["unserved"][is_open] = unserved(question, workspace, positions_m[is_open])
+    return values
 
 
 def _values(
     question: Question, workspace: Workspace, positions_m: FloatArray, keys: frozenset[str]
 ) -> Values:
-    cable, found = question.cable, {}
+    cable, values = question.cable, {}
     if cable is None or "diameter" in keys:
         _, sizing = size_worst(question.robot, workspace, positions_m, question.material)
-        statics, found["diameter"] = sizing.statics, sizing.diameter_m
+        statics, values["diameter"] = sizing.statics, sizing.diameter_m
     if cable is not None:
-        statics = _worst_with(question, workspace, positions_m, cable)
-    used = _used(statics, cable)
-    governing_cable = np.nan_to_num(used, nan=-np.inf).argmax(axis=-1)
-    found |= {
-        "utilisation": used.max(axis=-1),
+        statics = _solve_worst_orientation(question, workspace, positions_m, cable)
+    utilisation = _utilisation(statics, cable)
+    governing_cable = np.nan_to_num(utilisation, nan=-np.inf).argmax(axis=-1)
+    values |= {
+        "utilisation": utilisation.max(axis=-1),
         "tension": statics.largest_tension_N,
         "governing": np.where(statics.is_solved, governing_cable + 1.0, np.nan),
         "verdict": statics.verdict.astype(np.float64),
@@ -363,35 +351,34 @@ def _values(
     }
     if "sag" in keys:
         with np.errstate(invalid="ignore"):
-            found["sag"] = sag_ratio(statics).max(axis=-1)
+            values["sag"] = sag_ratio(statics).max(axis=-1)
     if "stiffness" in keys:
         softness = largest_displacement_m_per_N(statics)
         stays = np.where(np.isnan(softness), 0.0, 1.0 / softness)
-        found["stiffness"] = np.where(statics.is_solved, stays, np.nan)
+        values["stiffness"] = np.where(statics.is_solved, stays, np.nan)
     if "frequency" in keys:
         density = statics.weight_N_per_m / STANDARD_GRAVITY_M_PER_S2
-        platform = question.robot.platform
-        found["frequency"] = frequencies_Hz(statics, platform, density)
-    return found
+        values["frequency"] = frequencies_Hz(statics, question.robot.platform, density)
+    return values
 
 
-def _worst_with(
+def _solve_worst_orientation(
     question: Question, workspace: Workspace, positions_m: FloatArray, cable: Cable | Cables
 ) -> Statics:
-    """Solve positions (n, 3) with a rope, each in the orientation in which it is used most."""
+    """Solve positions (n, 3) with a rope, each in the orientation of its largest utilisation."""
     robot, space = question.robot, workspace.space
     places = space.places(positions_m)
     statics = solve_sagging(robot, Poses.at(places), cable)
     if space.orientations.count == 1:
         return statics
-    asked = demand_of(_used(statics, cable).max(axis=-1), statics, workspace.hangs_below)
-    return solve_sagging(robot, Poses.at(in_worst_turn(space, places, asked)), cable)
+    demand = demand_of(_utilisation(statics, cable).max(axis=-1), statics, workspace.hangs_below)
+    return solve_sagging(robot, Poses.at(in_worst_turn(space, places, demand)), cable)
 
 
-def _used(statics: Statics, cable: Cable | Cables | None) -> FloatArray:
+def _utilisation(statics: Statics, cable: Cable | Cables | None) -> FloatArray:
     """Return largest over allowable tension of each cable (..., n_cables).
 
-    The thinnest cable is used up to its limit, by definition.
+    That of the thinnest cable is 1, by definition.
     """
     tension = statics.cable_tension_N
     if cable is None:
@@ -405,24 +392,22 @@ def unserved(question: Question, workspace: Workspace, positions_m: FloatArray) 
     Tried are the ropes that no other one beats, see `designer.selection.candidate.undominated`.
     What the study leaves out with some rope is not asked for.
     """
-    left = np.ones(len(positions_m), dtype=np.bool_)
-    count = workspace.orientations.count
+    is_unserved = np.ones(len(positions_m), dtype=np.bool_)
+    count, below = workspace.orientations.count, workspace.hangs_below
+    step = max(_BATCH // count, 1)
     strongest_first = sorted(
-        undominated(question.candidates),
-        key=lambda candidate: -candidate.cable.allowable_tension_N,
+        (candidate.cable for candidate in undominated(question.candidates)),
+        key=lambda cable: -cable.allowable_tension_N,
     )
-    for candidate in strongest_first:
-        at = np.flatnonzero(left)
-        if not len(at):
-            break
-        for start in range(0, len(at), max(_PIECE // count, 1)):
-            some = at[start : start + max(_PIECE // count, 1)]
-            poses = Poses.at(workspace.space.places(positions_m[some]))
-            statics = solve_sagging(question.robot, poses, candidate.cable)
-            allowable = candidate.cable.allowable_tension_N
-            used = demand_of(statics.largest_tension_N, statics, workspace.hangs_below)
-            left[some] = (used.reshape(-1, count) > allowable).any(axis=1)
-    return left
+    for cable in strongest_first:
+        remaining = np.flatnonzero(is_unserved)
+        for start in range(0, len(remaining), step):
+            batch = remaining[start : start + step]
+            poses = Poses.at(workspace.space.places(positions_m[batch]))
+            statics = solve_sagging(question.robot, poses, cable)
+            demand = demand_of(statics.largest_tension_N, statics, below).reshape(-1, count)
+            is_unserved[batch] = (demand > cable.allowable_tension_N).any(axis=1)
+    return is_unserved
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -436,77 +421,76 @@ class WorstAnswer:
     place: FloatArray | None
     sentence: str  #: What that is
 
+    @property
+    def diameter_m(self) -> float | None:
+        sizing = self.workspace.sagging
+        return None if sizing is None else sizing.diameter_m
+
+    @property
+    def utilisation(self) -> float | None:
+        return None if self.rope is None else self.rope.utilisation
+
 
 def worst_answer(question: Question, reporter: Reporter = SILENT) -> WorstAnswer | None:
     """Search for the worst poses; None without a workspace."""
     workspace = question.workspace
     if workspace is None:
         return None
-    built = question.built
-    section_m = section_of_workspace(built, workspace, question.study.material)
-    built = replace(built, section_m=section_m)
+    family = question.study.material
+    section_m = section_of_workspace(question.built, workspace, family)
+    built = replace(question.built, section_m=section_m)
     with reporter.task("workspace", workspace.sample_count) as advance:
-        material = built.material(question.study.material)
-        found = map_workspace(built.robot, workspace, material, progress=advance)
+        chart = map_workspace(built.robot, workspace, built.material(family), progress=advance)
     if question.cable is None:
-        return WorstAnswer(found, None, *_worst_of_family(found, question))
-    if isinstance(question.rope, Rope):
-        met, case = _met_in_cases(question, workspace, question.rope)
+        return WorstAnswer(chart, None, *_worst_of_family(chart, question))
+    of_case = ""
+    if isinstance(question.rope, Rope):  # in all load cases, as the report does
+        cases = Cases(question.robot, workspace, question.study.load_cases or (STATIC,))
+        cables = [[question.cable_in(case, question.rope)] for case in cases.each]
+        (sampled,) = cases.sampled(cables, lambda _: None)
+        searched = searched_all(sampled)
+        case = governing(searched).case
+        verification = together(searched)
+        of_case = "" if case is STATIC else f" in the load case '{case.name}'"
     else:
-        met, case = _met(question, workspace, question.cable), ""
-    return WorstAnswer(found, met, *_worst_of_rope(met, case))
+        verification = _verify_groups(question, workspace, question.cable)
+    place = verification.worst_place
+    if not np.isfinite(place).all():
+        return WorstAnswer(chart, verification, None, "The rope serves no pose.")
+    if np.isinf(verification.utilisation):
+        sentence = f"No equilibrium was found here with this rope{of_case}, for example."
+    else:
+        sentence = (
+            f"The pose of the largest utilisation: {100.0 * verification.utilisation:.4g} % of the "
+            f"allowable tension{of_case}."
+        )
+    return WorstAnswer(chart, verification, np.pad(place, (0, 6 - len(place))), sentence)
 
 
-def _met_in_cases(question: Question, workspace: Workspace, rope: Rope) -> tuple[Verification, str]:
-    """Return what a rope meets in all load cases, and that which governs; as the report does."""
-    cases = Cases(question.robot, workspace, question.study.load_cases or (STATIC,))
-    cables = [[question.cable_in(case, rope)] for case in cases.each]
-    (found,) = cases.sampled(cables, lambda _: None)
-    found = searched_all(found)
-    case = governing(found).case
-    return together(found), "" if case is STATIC else f" in the load case '{case.name}'"
-
-
-def _met(question: Question, workspace: Workspace, cable: Cable | Cables) -> Verification:
+def _verify_groups(question: Question, workspace: Workspace, cable: Cable | Cables) -> Verification:
     """Return what the ropes of groups meet over the whole workspace."""
     robot = question.robot
     assert isinstance(cable, Cables)  # of one rope see above
-    one_each = [np.array([k]) for k in range(robot.n_cables)]
-    met = verify_groups(robot, workspace, cable, one_each)
-    worst = int(np.argmax(met.utilisation))
-    used = float(met.utilisation[worst])
-    tension = used * float(cable.allowable_tension_N[worst])
-    unknown = np.full(robot.n_cables, np.nan)
-    place = met.worst_place[worst]
-    return Verification(place, tension, used, met.longest_m, unknown, met.is_refined)
+    groups = verify_groups(robot, workspace, cable, [np.array([k]) for k in range(robot.n_cables)])
+    worst = int(np.argmax(groups.utilisation))
+    utilisation = float(groups.utilisation[worst])
+    tension = utilisation * float(cable.allowable_tension_N[worst])
+    unknown, place = np.full(robot.n_cables, np.nan), groups.worst_place[worst]
+    return Verification(place, tension, utilisation, groups.longest_m, unknown, groups.is_refined)
 
 
-def _worst_of_family(found: WorkspaceMap, question: Question) -> tuple[FloatArray | None, str]:
-    if found.sagging is not None:
-        needed = f"{1e3 * found.sagging.diameter_m:.4g} mm"
+def _worst_of_family(chart: WorkspaceMap, question: Question) -> tuple[FloatArray | None, str]:
+    if chart.sagging is not None:
+        needed = f"{1e3 * chart.sagging.diameter_m:.4g} mm"
         at_rest = " at rest, without the load cases" if question.study.load_cases else ""
-        return found.sagging.place, f"The pose that needs the thickest cable{at_rest}, {needed}."
-    pose = found.infeasible_pose
+        return chart.sagging.place, f"The pose that needs the thickest cable{at_rest}, {needed}."
+    pose = chart.infeasible_pose
     if pose is None:
-        return None, "Every pose is left out."
+        return None, "Every pose is excluded."
     return pose.place, "No cable of the configured family holds the platform here, for example."
 
 
-def _worst_of_rope(met: Verification, case: str) -> tuple[FloatArray | None, str]:
-    place = met.worst_place
-    if not np.isfinite(place).all():
-        return None, "The rope serves no pose."
-    place = np.pad(place, (0, 6 - len(place)))
-    if np.isinf(met.utilisation):
-        return place, f"No equilibrium was found here with this rope{case}, for example."
-    percent = f"{100.0 * met.utilisation:.4g} %"
-    return (
-        place,
-        f"The pose in which the rope is used most, {percent} of its allowable tension{case}.",
-    )
-
-
-_QUICK_SAMPLES = 1500
+# The ropes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -588,26 +572,21 @@ def quick_ropes(question: Question) -> Ropes | None:
     workspace, selection = question.workspace, question.selection
     if workspace is None:
         return None
-    few = replace(workspace, samples=min(workspace.samples, _QUICK_SAMPLES))
+    sampled = replace(workspace, samples=min(workspace.samples, _QUICK_SAMPLES))
     grades, load_cases = question.catalogue.grades, question.study.load_cases
-    candidates = at_samples(few, selection, grades, question.built, load_cases)
-    objectives = [o for o in selection.objectives if o != "stiffness"]
-    best = None
-    holding = [e for e in candidates if e.verification.holds and e.rejected_by is None]
+    candidates = at_samples(sampled, selection, grades, question.built, load_cases)
+    objectives = [name for name in selection.objectives if name != "stiffness"]
+    best, holding = None, [c for c in candidates if c.verification.holds and c.rejected_by is None]
+    front = {id(c) for c in holding}
     if objectives and selection.objectives[0] != "stiffness":
-        comparable = [e for e in holding if np.isfinite(e.figures.burden(objectives[0]))]
-        best = min(comparable, key=lambda e: e.key(objectives), default=None)
-        is_in = is_undominated(burdens(holding, objectives))
-        front = {id(e) for e, wins in zip(holding, is_in, strict=True) if wins}
-    else:
-        front = {id(e) for e in holding}
-    rows = tuple(
-        _quick_row(candidate, candidate is best, id(candidate) in front) for candidate in candidates
-    )
+        comparable = [c for c in holding if np.isfinite(c.figures.burden(objectives[0]))]
+        best = min(comparable, key=lambda c: c.key(objectives), default=None)
+        is_in_front = is_undominated(burdens(holding, objectives))
+        front = {id(c) for c, is_in in zip(holding, is_in_front, strict=True) if is_in}
+    rows = tuple(_quick_row(c, c is best, id(c) in front) for c in candidates)
     reason = "" if best else "none holds at the samples" if not holding else "needs the full search"
     chosen = None if best is None else Rope(best.grade.id, best.size.id)
-    problems = question.catalogue.problems
-    return Ropes(rows, chosen, reason, is_final=False, problems=problems)
+    return Ropes(rows, chosen, reason, is_final=False, problems=question.catalogue.problems)
 
 
 def _quick_row(candidate: Candidate, is_best: bool, is_in_front: bool) -> RopeRow:
@@ -628,9 +607,16 @@ def _quick_row(candidate: Candidate, is_best: bool, is_in_front: bool) -> RopeRo
 
 
 def _row(candidate: Candidate, standing: str, reason: str) -> RopeRow:
-    allowable_tension_N = candidate.cable.allowable_tension_N
-    met = candidate.verification, candidate.figures, candidate.rejected_by is not None
-    return RopeRow(candidate.grade, candidate.size, reason, standing, allowable_tension_N, *met)
+    return RopeRow(
+        candidate.grade,
+        candidate.size,
+        reason,
+        standing,
+        candidate.cable.allowable_tension_N,
+        candidate.verification,
+        candidate.figures,
+        candidate.rejected_by is not None,
+    )
 
 
 def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes:
@@ -650,7 +636,7 @@ def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes:
     return _answered(replace(ropes, problems=catalogue.problems), analysis)
 
 
-def asked_alone(question: Question) -> Ropes:
+def requirements_alone(question: Question) -> Ropes:
     """Answer a study that asks for no rope; no rows."""
     analysis = Analysis.begin(question.study, question.catalogue)
     return _answered(Ropes((), None, "", is_final=True), analysis)
@@ -681,13 +667,16 @@ def ropes_of(selection: SelectionResult, groups: GroupChoice | None = None) -> R
     )
 
 
+# Two states
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Pin:
     """A state with what was known of it; None for what was not yet."""
 
     question: Question
     fields: tuple[Field, ...]
-    here: Here | None = None
+    here: PoseAnswer | None = None
     worst: WorstAnswer | None = None
     ropes: Ropes | None = None
 
@@ -698,16 +687,12 @@ class Pin:
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What reads otherwise in the two states, empty for what is not there.
-
-    ``difference`` is what the figure has become less what it was, in its unit, NaN where it is not
-    known; None of all that is no figure.
-    """
+    """What reads otherwise in the two states, empty for what is not there."""
 
     title: str
     before: str
     after: str
-    difference: float | None = None
+    difference: float | None = None  #: After less before, NaN if not known; None of no figure
     unit: str = ""
 
     @property
@@ -733,23 +718,14 @@ class Differences:
     is_like_with_like: bool
 
 
-def _needed_at_worst_m(pin: Pin) -> float | None:
-    sizing = None if pin.worst is None else pin.worst.workspace.sagging
-    return None if sizing is None else sizing.diameter_m
-
-
-def _used_at_worst(pin: Pin) -> float | None:
-    rope = None if pin.worst is None else pin.worst.rope
-    return None if rope is None else rope.utilisation
-
-
+# Title, unit, what leads to it from SI, and the figure of a state; None where it is not known
 _FIGURES: tuple[tuple[str, str, float, Callable[[Pin], float | None]], ...] = (
     ("Diameter needed here", "mm", 1e3, lambda p: p.here.diameter_m if p.here else None),
     ("Largest tension here", "kN", 1e-3, lambda p: p.here.max_tension_N if p.here else None),
     ("Utilisation here", "%", 100.0, lambda p: p.here.utilisation if p.here else None),
     ("Stiffness here", "kN/m", 1e-3, lambda p: p.here.stiffness_N_per_m if p.here else None),
-    ("Diameter needed at worst", "mm", 1e3, _needed_at_worst_m),
-    ("Utilisation at worst", "%", 100.0, _used_at_worst),
+    ("Diameter needed at worst", "mm", 1e3, lambda p: p.worst.diameter_m if p.worst else None),
+    ("Utilisation at worst", "%", 100.0, lambda p: p.worst.utilisation if p.worst else None),
     (
         "Mass of all cables, best rope",
         "kg",
@@ -757,7 +733,6 @@ _FIGURES: tuple[tuple[str, str, float, Callable[[Pin], float | None]], ...] = (
         lambda p: p.best.figures.mass_kg if p.best else None,
     ),
 )
-"""Title, unit, what leads to it from SI, and the figure of a state; None where it is not known."""
 
 
 def compare(before: Pin, after: Pin) -> Differences:

@@ -13,12 +13,12 @@ import numpy as np
 from designer.documents.plain import csv_text
 from designer.errors import Fault, InputError, NothingToExportError, OutputError
 from designer.explore.answers import (
-    CableHere,
+    CableState,
     MapAnswer,
     RopeRow,
     Ropes,
-    here,
     map_answer,
+    pose_answer,
     quick_ropes,
 )
 from designer.explore.question import Question
@@ -88,21 +88,13 @@ def export(
     ropes: Ropes | None = None,
     poses: Path | None = None,
 ) -> Written:
-    """Write files, whole or not at all.
+    """Write files, whole or not at all; raise DesignerError where that fails, or nothing is there.
 
-    Raises DesignerError if they cannot be written, or there is nothing to write.
-
-    Parameters
-    ----------
-    content : str
-        ``report``: what `designer report` writes, into the folder ``target``. ``tables``:
-        ``cables.csv``, ``map.csv`` and ``ropes.csv`` into that folder. ``vtk``: the map into the
-        file ``target``, which ends in ``.vtu``. ``lengths``: what `designer lengths` writes. Else
-        what `designer export` does.
-    ropes : Ropes, optional
-        For ``tables``: the ropes as they are shown.
-    poses : Path, optional
-        For ``lengths``: the table of poses; without it those along the path of the study.
+    The ``content`` ``report`` is what `designer report` writes, into the folder ``target``;
+    ``tables``: ``cables.csv``, ``map.csv`` and ``ropes.csv``, with the ``ropes`` as they are shown,
+    into that folder; ``vtk``: the map, into a file ``.vtu``; ``lengths``: what `designer lengths`
+    writes, at a table of ``poses``, else along the path of the study. Else what `designer export`
+    does.
     """
     target = Path(target)
     if content == "report":
@@ -158,9 +150,9 @@ def _report(question: Question, reporter: Reporter, folder: Path) -> Written:
 
 
 def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Written:
-    pose = here(question)
+    pose = pose_answer(question)
     tables = {
-        "cables.csv": _csv([f.name for f in fields(CableHere)], map(asdict, pose.cables)),
+        "cables.csv": _csv([f.name for f in fields(CableState)], map(asdict, pose.cables)),
     }
     chart = map_answer(question, fine=True, quantities=_ALL)
     if chart.grids:

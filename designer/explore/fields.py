@@ -1,6 +1,7 @@
 """Every number of a study that can vary: found in the schema and the file, not listed here.
 
-A slider goes from where to where the machine, or the number itself, makes sense."""
+A slider goes from where to where the machine, or the number itself, makes sense.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +40,7 @@ from designer.units import (
 _FACTOR = 4.0
 _TURN_RAD = math.radians(45.0)
 _DEGREES = 40.0
-_MOST_SAFETY = 12.0
+_MAX_SAFETY_FACTOR = 12.0
 _IN_WORLD = ("pose.position", "workspace.region.z", "workspace.region.box", "workspace.floor")
 _IN_BODY = ("robot.platform.attachments", "robot.platform.centre_of_mass", "robot.platform.hull")
 
@@ -117,7 +118,7 @@ def _ends(
     elif (least, reader.at_most) == (0.01, 1.0):
         ends = min(0.5, at or 0.5), 1.0
     elif (least, reader.at_most) == (1.0, 100.0):
-        ends = 1.0, max(_MOST_SAFETY, at)
+        ends = 1.0, max(_MAX_SAFETY_FACTOR, at)
     elif kind is LENGTH:
         ends = _lengths(plain, value, reader, sizes)
     elif at > 0.0 and (least or 0.0) >= 0.0:
@@ -146,13 +147,13 @@ def _axis(place: Sequence[Key]) -> int:
 
 
 Kind = Literal["quantity", "count", "choice"]
-_MOST_ROWS = 64  #: A longer list is edited in the file
+MAX_ROWS = 64  #: A longer list is edited in the file
 _AXES = "xyz"
 _ENDS = ("from", "to")
 _NUMBER = re.compile(r"\s*[-+−]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-_LEFT_OUT = ("format", "robot.planar", "measurements.settled")
+_EXCLUDED = ("format", "robot.planar", "measurements.settled")
 """What is no matter of degree: another robot, other data."""
-_OF_A_BODY = (
+_BODY_ONLY = (
     "robot.platform.centre_of_mass",
     "robot.platform.wrench.moment",
     "robot.platform.inertia",
@@ -198,15 +199,15 @@ class Field:
         if self.kind == "count":
             return str(round(value_SI))
         unit = _unit_of(self.text)
-        least, per_unit = 0.0, 1.0
+        zero_SI, per_unit = 0.0, 1.0
         if unit:
-            least = read_quantity(f"0 {unit}", self.dimension)
-            per_unit = read_quantity(f"1 {unit}", self.dimension) - least
-        shown = (value_SI - least) / per_unit
+            zero_SI = read_quantity(f"0 {unit}", self.dimension)
+            per_unit = read_quantity(f"1 {unit}", self.dimension) - zero_SI
+        value = (value_SI - zero_SI) / per_unit
         span = abs(self.high - self.low) if self.high is not None and self.low is not None else 0.0
-        size = abs(span / per_unit) if not self.is_log and span else abs(shown)
+        size = abs(span / per_unit) if not self.is_log and span else abs(value)
         places = _ROUND - math.floor(math.log10(size)) if size > 0.0 else 0
-        number = f"{(shown if exactly else round(shown, places)) + 0.0:.12g}"
+        number = f"{(value if exactly else round(value, places)) + 0.0:.12g}"
         return f"{number} {unit}" if unit else number
 
 
@@ -222,14 +223,7 @@ def study_fields(
 ) -> tuple[Field, ...]:
     """Return the fields of a study that is well-formed, in the order of the schema.
 
-    Parameters
-    ----------
-    section : StudySection
-        The study by its schema.
-    root : Node
-        The same as the file has it.
-    effects : mapping of str to Effect
-        All effects that are known, by id.
+    ``root`` is the same as the file has it; ``effects`` are all that are known, by id.
     """
     sizes = Sizes.of(section)
     hidden = _without_meaning(section)
@@ -237,7 +231,7 @@ def study_fields(
     return tuple(
         _field(slot, sizes if slot.depends_on_load else sizes.without_load)
         for slot in slots
-        if slot.plain not in _LEFT_OUT and not (slot.given is None and slot.plain in hidden)
+        if slot.plain not in _EXCLUDED and not (slot.given is None and slot.plain in hidden)
     )
 
 
@@ -245,7 +239,7 @@ def _without_meaning(section: StudySection) -> frozenset[str]:
     """Return what means nothing to this robot, and would be refused."""
     robot, is_point = section.robot, section.robot.platform.attachments is None
     freedom = (2 if is_point else 3) if robot.planar else (3 if is_point else 6)
-    hidden = {*(_OF_A_BODY if is_point else ())}
+    hidden = {*(_BODY_ONLY if is_point else ())}
     if len(robot.anchors) <= freedom:
         hidden.add("robot.tension_min")
     if section.workspace is None:
@@ -259,11 +253,11 @@ def _without_meaning(section: StudySection) -> frozenset[str]:
 class _Kind:
     """What a field of the schema holds: how its numbers are read, or between what one chooses.
 
-    ``reader`` is that of a number or of the numbers in its lists, ``alone`` that of a number only.
+    ``reader`` is of a number or of the numbers in its lists, ``scalar_reader`` of a number only.
     """
 
     reader: QuantityField | WholeNumber | None
-    alone: QuantityField | WholeNumber | None
+    scalar_reader: QuantityField | WholeNumber | None
     words: tuple[str, ...]
     is_optional: bool
 
@@ -305,14 +299,14 @@ def _walk(section: BaseModel, node: Node | None, place: tuple[Key, ...]) -> Iter
 
 @cache
 def _kinds(section: type[BaseModel]) -> Mapping[str, _Kind]:
-    found = {}
+    kinds = {}
     for name, info in section.model_fields.items():
         kind = info.rebuild_annotation()
         plain = get_args(kind)[0] if get_origin(kind) is Annotated else kind
         words = get_args(plain) if get_origin(plain) is Literal and len(get_args(plain)) > 1 else ()
-        reader, alone = (reader_in(kind, into_lists=into) for into in (True, False))
-        found[name] = _Kind(reader, alone, words, NoneType in get_args(plain))
-    return found
+        reader, scalar = (reader_in(kind, into_lists=into) for into in (True, False))
+        kinds[name] = _Kind(reader, scalar, words, NoneType in get_args(plain))
+    return kinds
 
 
 def _slots(value: Any, node: Node | None, place: tuple[Key, ...], kind: _Kind) -> Iterator[_Slot]:
@@ -321,15 +315,15 @@ def _slots(value: Any, node: Node | None, place: tuple[Key, ...], kind: _Kind) -
     if isinstance(value, BaseModel):
         yield from _walk(value, node, place)
     elif isinstance(value, tuple):
-        for index, item in enumerate(value if len(value) <= _MOST_ROWS else ()):
+        for index, item in enumerate(value if len(value) <= MAX_ROWS else ()):
             child = None if node is None else node.child(index)
             yield from _slots(item, child, (*place, index), kind)
     elif isinstance(value, bool):
         yield _Slot(place, value, given, None, ("false", "true"))
     elif kind.words and not in_list:
         yield _Slot(place, value, given, None, kind.words)
-    elif value is None and kind.alone is not None:
-        yield _Slot(place, value, given, kind.alone, is_optional=kind.is_optional)
+    elif value is None and kind.scalar_reader is not None:
+        yield _Slot(place, value, given, kind.scalar_reader, is_optional=kind.is_optional)
     elif isinstance(value, int | float) and kind.reader is not None:
         is_optional = kind.is_optional and not in_list
         yield _Slot(place, value, given, kind.reader, is_optional=is_optional)
@@ -345,13 +339,13 @@ def _effect_slots(
             of_cable = f" of cable {declared.cable}"
         title = f"{declared.id.replace('_', ' ').capitalize()}{of_cable}"
         summary = effect.summary.format(cable=declared.cable)
-        for one in effect.parameters_for(n_cables):
-            at = (*place, one.name)
-            node = root.at(at)
+        for parameter in effect.parameters_for(n_cables):
+            keys = (*place, parameter.name)
+            node = root.at(keys)
             given = None if node is None else node.as_written()
-            words = f"{title}, {one.label}", f"Effect: {summary}."
-            value = declared.parameters[one.name]
-            yield _Slot(at, value, given, field_of(one), effect=words)
+            words = f"{title}, {parameter.label}", f"Effect: {summary}."
+            value = declared.parameters[parameter.name]
+            yield _Slot(keys, value, given, field_of(parameter), effect=words)
 
 
 @lru_cache(maxsize=4096)
@@ -425,10 +419,10 @@ def _unit_of(text: str) -> str:
     return "" if number is None else text[number.end() :].strip()
 
 
-def with_ends_of(one: Field, file: Field | None) -> Field:
+def with_slider_of(field: Field, saved: Field | None) -> Field:
     """Return a field with the slider that it has in the file, if its value lies on it."""
-    if file is None or file.low is None or file.high is None or one.value_SI is None:
-        return one
-    if not file.low <= one.value_SI <= file.high:
-        return one
-    return replace(one, low=file.low, high=file.high, is_log=file.is_log)
+    if saved is None or saved.low is None or saved.high is None or field.value_SI is None:
+        return field
+    if not saved.low <= field.value_SI <= saved.high:
+        return field
+    return replace(field, low=saved.low, high=saved.high, is_log=saved.is_log)

@@ -139,8 +139,8 @@ class Question:
         cables.
         """
         if self.rope is None or isinstance(self.rope, Rope):
-            return None if self.rope is None else self._as_it_meets(self.rope)
-        cables = {rope: self._as_it_meets(rope) for rope in self.rope.ropes}
+            return None if self.rope is None else self._with_converged_stiffness(self.rope)
+        cables = {rope: self._with_converged_stiffness(rope) for rope in self.rope.ropes}
         if len(self.rope.ropes) != self.robot.n_cables:
             raise DesignerError("the ropes of the groups are of a robot with other cables")
         return Cables(tuple(cables[rope] for rope in self.rope.ropes))
@@ -164,7 +164,7 @@ class Question:
             )
         return self.built.of_products.cable(allowance.cable(grade, size))
 
-    def _as_it_meets(self, rope: Rope) -> Cable:
+    def _with_converged_stiffness(self, rope: Rope) -> Cable:
         """Return a rope as stiff as at the largest tension that it meets, at few samples."""
         cable = self.cable_in(STATIC, rope)
         if cable.stiffening is None:
@@ -211,7 +211,7 @@ def catalogue_of(study: Study, plugins: Plugins) -> Catalogue:
     return catalogue
 
 
-def first_place(study: Study | None) -> FloatArray:
+def initial_place(study: Study | None) -> FloatArray:
     """Return where the platform is at first: in the study's pose, else in the middle."""
     if study is None:
         return frozen_array(np.zeros(6))
@@ -274,11 +274,8 @@ class Message:
 class ThrottledReporter:
     """A reporter, and a spinner, that tell how far something is, a few times a second at most.
 
-    Parameters
-    ----------
-    tell : callable
-        Called with what is being done, how many steps are done, and of how many; 0 of 0 where that
-        is not known.
+    ``tell`` is called with what is being done, how many steps are done, and of how many; 0 of 0
+    where that is not known.
     """
 
     def __init__(self, tell: Callable[[str, int, int], None]) -> None:

@@ -18,8 +18,8 @@ from designer.documents.opened import read_bytes
 from designer.effects.load import load_effects
 from designer.effects.registry import KnownEffects
 from designer.errors import DesignerError, Fault, InputError, OutputError
-from designer.explore.fields import Field, keys_of, study_fields, with_ends_of
-from designer.explore.question import Question, Rope, RopePerCable, first_place
+from designer.explore.fields import Field, keys_of, study_fields, with_slider_of
+from designer.explore.question import Question, Rope, RopePerCable, initial_place
 from designer.io.config.moved import moved_to
 from designer.io.config.reader import checked, study_of
 from designer.io.config.schema import StudySection
@@ -111,45 +111,45 @@ def text_of(path: Path) -> str:
     return decode(read_bytes(path, str(path)), str(path))
 
 
-def with_entry(reading: Reading, text: str, one: Field, typed: str) -> str:
+def with_entry(reading: Reading, text: str, field: Field, typed: str) -> str:
     """Return a text of a study with what was typed for a field of it.
 
     Nothing typed takes an optional value out. What the text lacks is added: of a list, with the
     other values of its row as they are.
     """
-    keys = _written(text, one.path)
-    is_there = edits.value_text(text, keys) is not None
-    if not typed.strip() and one.is_optional:
-        return edits.without(text, keys) if is_there else text
+    keys = _keys_in_text(text, field.path)
+    is_given = edits.value_text(text, keys) is not None
+    if not typed.strip() and field.is_optional:
+        return edits.without(text, keys) if is_given else text
     value = edits.scalar(typed)
-    if is_there:
+    if is_given:
         return edits.with_value(text, keys, value)
     if isinstance(keys[-1], int):
-        row = path_text(keys_of(one.path)[:-1])
+        row = path_text(keys_of(field.path)[:-1])
         parts = [f.text for f in reading.fields if path_text(keys_of(f.path)[:-1]) == row]
         parts[keys[-1]] = value
         value, keys = f"[{', '.join(parts)}]", keys[:-1]
-    return edits.with_value(_spelt_out(text, keys), keys, value)
+    return edits.with_value(_expanded(text, keys), keys, value)
 
 
-def put_back(now: Reading, saved: Reading, path: str) -> str:
+def put_back(present: Reading, saved: Reading, path: str) -> str:
     """Return the present text with one field as the file has it, or without it."""
-    text = now.text
-    here, there = _written(text, path), _written(saved.text, path)
-    own = edits.value_text(saved.text, there)
-    if own is not None:
-        if edits.value_text(text, here) is None:
-            text = _spelt_out(text, here)
-        return edits.with_value(text, here, own)
-    if edits.value_text(text, here) is None:
+    text = present.text
+    keys, saved_keys = _keys_in_text(text, path), _keys_in_text(saved.text, path)
+    saved_value = edits.value_text(saved.text, saved_keys)
+    if saved_value is not None:
+        if edits.value_text(text, keys) is None:
+            text = _expanded(text, keys)
+        return edits.with_value(text, keys, saved_value)
+    if edits.value_text(text, keys) is None:
         return text
-    if isinstance(here[-1], int):
+    if isinstance(keys[-1], int):
         default = saved.by_path.get(path)
-        text = edits.with_value(text, here, "0" if default is None else default.text)
-        here = here[:-1]
+        text = edits.with_value(text, keys, "0" if default is None else default.text)
+        keys = keys[:-1]
     else:
-        text = edits.without(text, here)
-    return _shortened(saved.text, _without_new(now, saved.text, text, here), here)
+        text = edits.without(text, keys)
+    return _abbreviated(saved.text, _without_additions(present, saved.text, text, keys), keys)
 
 
 def pose_text(place: FloatArray, *, is_point_mass: bool) -> str:
@@ -163,30 +163,30 @@ def pose_text(place: FloatArray, *, is_point_mass: bool) -> str:
     return f"{{position: {position}, rotation_vector: {turn}}}"
 
 
-def _without_new(now: Reading, saved_text: str, text: str, keys: Sequence[Key]) -> str:
+def _without_additions(present: Reading, saved_text: str, text: str, keys: Sequence[Key]) -> str:
     """Return a text without what the file lacks around a path, if that says nothing new."""
-    section = now.context.read(text).section
+    section = present.context.read(text).section
     for end in range(1, len(keys) + 1):
         is_new = edits.value_text(saved_text, keys[:end]) is None
         if is_new and edits.value_text(text, keys[:end]) is not None:
             shorter = edits.without(text, keys[:end])
-            if section is not None and now.context.read(shorter).section == section:
+            if section is not None and present.context.read(shorter).section == section:
                 return shorter
     return text
 
 
-def _shortened(saved_text: str, text: str, keys: Sequence[Key]) -> str:
+def _abbreviated(saved_text: str, text: str, keys: Sequence[Key]) -> str:
     """Return the text with a list in place of a mapping on this path, where the file has one."""
     for end in range(1, len(keys)):
-        around = keys[:end]
-        only = edits.value_text(text, (*around, _shorthand(around)))
-        was_list = only is not None and _is_list(edits.value_text(saved_text, around))
-        if only is not None and was_list and edits.field_count(text, around) == 1:
-            return edits.with_value(text, around, only)
+        outer = keys[:end]
+        value = edits.value_text(text, (*outer, _shorthand(outer)))
+        was_list = value is not None and _is_list(edits.value_text(saved_text, outer))
+        if value is not None and was_list and edits.field_count(text, outer) == 1:
+            return edits.with_value(text, outer, value)
     return text
 
 
-def _written(text: str, path: str) -> tuple[Key, ...]:
+def _keys_in_text(text: str, path: str) -> tuple[Key, ...]:
     """Return where a path of the schema is in a text, where a list may stand for a mapping."""
     keys: tuple[Key, ...] = ()
     for key in keys_of(path):
@@ -195,13 +195,13 @@ def _written(text: str, path: str) -> tuple[Key, ...]:
     return keys
 
 
-def _spelt_out(text: str, keys: Sequence[Key]) -> str:
+def _expanded(text: str, keys: Sequence[Key]) -> str:
     """Return the text with a list that stands for a mapping on this path written as that."""
     for end in range(1, len(keys)):
-        around = keys[:end]
-        value = edits.value_text(text, around)
+        outer = keys[:end]
+        value = edits.value_text(text, outer)
         if value is not None and _is_list(value) and isinstance(keys[end], str):
-            return edits.with_value(text, around, f"{{{_shorthand(around)}: {edits.flow(value)}}}")
+            return edits.with_value(text, outer, f"{{{_shorthand(outer)}: {edits.flow(value)}}}")
     return text
 
 
@@ -215,7 +215,7 @@ def _is_list(value: str | None) -> bool:
 
 OnDisk = Literal["same", "changed", "gone", "never saved"]
 _DIGITS = 6  #: Of metres: a drag sets no finer ones
-_MOST_STEPS = 1000  #: Some hours of edits; each holds a text and what was read of it
+MAX_STEPS = 1000  #: Some hours of edits; each holds a text and what was read of it
 
 
 @dataclass(slots=True)
@@ -230,14 +230,8 @@ class _Step:
 class Session:
     """A study on its way; used by one thread.
 
-    Parameters
-    ----------
-    text : str
-        Of the study, faulty or not.
-    context : Context
-        Where it came from, and what it is read with.
-    file : Path or None
-        Where it is saved; None for a shipped study, which is not written to.
+    ``text`` is of the study, faulty or not; ``file`` None for a shipped study, which is not written
+    to.
     """
 
     def __init__(self, text: str, context: Context, file: Path | None) -> None:
@@ -248,7 +242,7 @@ class Session:
         self._saved = context.read(text)
         self._question: tuple[SessionState, Question] | None = None
         self._fields: tuple[Reading, Reading, tuple[Field, ...]] | None = None
-        place = first_place(self._saved.study)
+        place = initial_place(self._saved.study)
         self._steps = [_Step("", SessionState(self._saved, self._saved, place))]
         self._at = 0  #: Which of these steps was the last one; those after it were undone
 
@@ -327,7 +321,7 @@ class Session:
         live, saved = self.state.live, self._saved
         if self._fields is None or self._fields[:2] != (live, saved):
             ends = saved.by_path
-            fields = tuple(with_ends_of(field, ends.get(field.path)) for field in live.fields)
+            fields = tuple(with_slider_of(field, ends.get(field.path)) for field in live.fields)
             self._fields = live, saved, fields
         return self._fields[2]
 
@@ -345,17 +339,9 @@ class Session:
         """Give a field another value, as typed; return what is wrong with it, nothing if taken.
 
         What is refused is kept in `rejected`, changes nothing else, and is tried again together
-        with the next edit: of two values that hang together, one must come first.
-
-        Parameters
-        ----------
-        path : str
-            Of a `Field`.
-        typed : str
-            A text of the field; an empty one takes an optional value out.
-        continuous : bool
-            Whether this goes on with the last such edit of the same field, as one step; see
-            `settle`.
+        with the next edit: of two values that hang together, one must come first. An empty text
+        takes an optional value out. A ``continuous`` edit goes on with the last such edit of the
+        same field, as one step; see `settle`.
         """
         field = self.state.live.by_path.get(path)
         if field is None:
@@ -364,11 +350,11 @@ class Session:
         self.rejected.pop(path, None)
         if " ".join(typed.split()) == field.text:
             return ()
-        together = {**{key: entry.text for key, entry in self.rejected.items()}, path: typed}
-        reading = self._with_entries(together)
+        entries = {**{key: entry.text for key, entry in self.rejected.items()}, path: typed}
+        reading = self._with_entries(entries)
         if reading.study is not None:
             self.rejected.clear()
-        elif len(together) > 1:
+        elif len(entries) > 1:
             reading = self._with_entries({path: typed})
         if reading.study is None:
             self.rejected[path] = Rejected(typed, reading.faults)
@@ -481,13 +467,13 @@ class Session:
             live = self.state.live if reading.study is None else reading
             changes |= {"reading": reading, "live": live}
             if moves and reading.study is not None:
-                changes["place"] = first_place(reading.study)
+                changes["place"] = initial_place(reading.study)
         state, last = replace(self.state, **changes), self._steps[self._at]
         del self._steps[self._at + 1 :]
         if key is not None and last.key == key:
             last.state = state
         else:
-            self._steps = [*self._steps, _Step(label, state, key)][-_MOST_STEPS:]
+            self._steps = [*self._steps, _Step(label, state, key)][-MAX_STEPS:]
             self._at = len(self._steps) - 1
 
     def _with_entries(self, entries: dict[str, str]) -> Reading:

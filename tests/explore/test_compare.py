@@ -11,8 +11,8 @@ from designer.explore.answers import (
     Pin,
     compare,
     full_ropes,
-    here,
     map_answer,
+    pose_answer,
     quick_ropes,
     worst_answer,
 )
@@ -26,7 +26,7 @@ def pin_of(session: Session, **how: Any) -> Pin:
     question = session.question()
     assert question is not None
     parts = {"worst": worst_answer(question), "ropes": quick_ropes(question)} | how
-    return Pin(question, session.fields(), here=here(question), **parts)
+    return Pin(question, session.fields(), here=pose_answer(question), **parts)
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ import pytest
 
 from designer import kernel
 from designer.explore import worker as worker_module
-from designer.explore.answers import Here, Ropes, full_ropes
+from designer.explore.answers import PoseAnswer, Ropes, full_ropes
 from designer.explore.export import rope_table
 from designer.explore.question import Long, Question, Quick, Request, Rope, failure_text
 from designer.explore.session import Session
@@ -69,7 +69,7 @@ def test_the_pose_is_answered_in_the_middle_of_longer_work(
     assert work.began.wait(10.0)
     found = asker.end_of(asker.ask("here", yard.question()))
     assert found.status == "done"
-    assert isinstance(found.answer, Here)
+    assert isinstance(found.answer, PoseAnswer)
     work.may_end.set()
     end = asker.end_of(long)
     assert (end.status, end.answer) == ("done", "worked")

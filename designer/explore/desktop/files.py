@@ -1,6 +1,7 @@
 """Files of the window: what is remembered, studies opened, saved and left, imports, plans, exports.
 
-What is not saved is asked about, never lost."""
+What is not saved is asked about, never lost.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from designer.explore.session import Session
     from designer.plugins import Plugins
 
-MOST_RECENT = 8
+MAX_RECENT = 8
 
 
 class Settings:
@@ -64,7 +65,7 @@ class Settings:
         """Put a study in front of the recent ones."""
         path = study.resolve()
         earlier = [study_file for study_file in self.recent if study_file != path]
-        names = [str(study_file) for study_file in [path, *earlier][:MOST_RECENT]]
+        names = [str(study_file) for study_file in [path, *earlier][:MAX_RECENT]]
         self._store.setValue("recent", names)
 
     def bytes_of(self, name: str) -> QByteArray:
@@ -100,19 +101,7 @@ _DISK_MS = 2000
 
 
 class Files(QObject):
-    """Dialogs about files, and what follows from them.
-
-    Parameters
-    ----------
-    parent : QWidget
-        What the dialogs stand before.
-    live : LiveSession
-        The open study.
-    settings : Settings
-        Where studies that were open are remembered.
-    with_plugins : bool
-        Whether studies are read with plugins of others; they are looked for with the first study.
-    """
+    """Dialogs about files, and what follows; plugins are looked for with the first study."""
 
     notice = Signal(str, tuple)
     """A line that asks for attention, and the names of its buttons; no line for no text."""
@@ -156,13 +145,20 @@ class Files(QObject):
         name, _ = QFileDialog.getOpenFileName(self._parent, "Import a robot", "", _ROBOTS)
         if not name:
             return
+        from designer.foreign.study import ImportAnswers, load_importers, read_foreign, study_text
+        from designer.io.output import write_file
+
         source = Path(name)
         stem = source.stem.removesuffix("_bodies").removesuffix("_cables")
         start = str(source.with_name(f"{stem}.yaml"))
         name, _ = QFileDialog.getSaveFileName(self._parent, "Save the study as", start, _STUDIES)
-        if name and self._succeeds(
-            lambda: _import(source, Path(name), self._plugins), "Not imported"
-        ):
+
+        def write() -> None:
+            importers, _ = load_importers(self._plugins)
+            text = study_text(read_foreign(source, importers=importers), ImportAnswers())
+            write_file(Path(name), text)  # what the robot's file does not say is to be filled in
+
+        if name and self._succeeds(write, "Not imported"):
             self.open(Path(name))
 
     def open(self, path: Path) -> None:
@@ -245,31 +241,23 @@ class Files(QObject):
     # Leaving
 
     def may_leave(self) -> bool:
-        """Ask what becomes of long work and of changes; tells whether to go on."""
+        """Ask what becomes of long work and of changes that are not saved; whether to go on."""
         self._live.flushing.emit()
-        return self._may_end_work() and self._may_drop_changes()
-
-    def _may_end_work(self) -> bool:
-        """Ask whether work of minutes that goes on may end without a result."""
-        unfinished = [NAMES[kind] for kind in LONG if kind in self._live.busy]
-        if self._live.session is None or not unfinished:
-            return True
-        button = QMessageBox.StandardButton
-        is_or_are = "is" if len(unfinished) == 1 else "are"
-        text = f"{fmt.capital(fmt.listing(unfinished))} {is_or_are} not finished. End it?"
-        buttons = button.Yes | button.Cancel
-        answer = QMessageBox.question(self._parent, _TITLE, text, buttons, button.Cancel)
-        return answer == button.Yes
-
-    def _may_drop_changes(self) -> bool:
-        session = self._live.session
+        session, kind = self._live.session, QMessageBox.StandardButton
+        unfinished = [NAMES[work] for work in LONG if work in self._live.busy]
+        if session is not None and unfinished:
+            is_or_are = "is" if len(unfinished) == 1 else "are"
+            text = f"{fmt.capital(fmt.listing(unfinished))} {is_or_are} not finished. End it?"
+            buttons = kind.Yes | kind.Cancel
+            answer = QMessageBox.question(self._parent, _TITLE, text, buttons, kind.Cancel)
+            if answer != kind.Yes:
+                return False
         if session is None or not session.is_modified:
             return True
-        button = QMessageBox.StandardButton
         text = f"The changes of “{session.name}” are not saved."
-        buttons = button.Save | button.Discard | button.Cancel
-        answer = QMessageBox.question(self._parent, _TITLE, text, buttons, button.Save)
-        return self.save() if answer == button.Save else answer == button.Discard
+        buttons = kind.Save | kind.Discard | kind.Cancel
+        answer = QMessageBox.question(self._parent, _TITLE, text, buttons, kind.Save)
+        return self.save() if answer == kind.Save else answer == kind.Discard
 
     def look_at_disk(self) -> None:
         """Say where the file was changed by another program, or is gone."""
@@ -393,15 +381,3 @@ class Files(QObject):
         self._live.message.emit("\n".join(lines))
         main = written.files[0]
         self.notice.emit(f"{main.name} is in {main.parent}.", ("Open", "Close"))
-
-
-def _import(source: Path, target: Path, plugins: Plugins) -> None:
-    """Write a robot of another program as a study; what its file does not say is to be filled in.
-
-    Raises DesignerError if there is no such robot in the file, or the study cannot be written.
-    """
-    from designer.foreign.study import ImportAnswers, load_importers, read_foreign, study_text
-    from designer.io.output import write_file
-
-    importers, _ = load_importers(plugins)
-    write_file(target, study_text(read_foreign(source, importers=importers), ImportAnswers()))

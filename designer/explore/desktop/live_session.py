@@ -2,13 +2,14 @@
 
 Whoever shows something listens to its signals, and nobody needs the window for that. It computes
 nothing. While something moves, the pose and a coarse map are asked for; when it rests, the whole
-map and the candidates."""
+map and the candidates.
+"""
 
 from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -157,7 +158,7 @@ class LiveSession(QObject):
         self._newest: dict[Kind, int] = {}
         self._last = self._since = 0
         self._rest = QTimer(self, singleShot=True, interval=_REST_MS)
-        self._rest.timeout.connect(self._ask_whole)
+        self._rest.timeout.connect(self._ask_all)
         self._ages = Ages()
         self._ages.changed.connect(self.busy_changed)
 
@@ -296,15 +297,10 @@ class LiveSession(QObject):
     def move_exit_point(self, number: int, position_m: FloatArray, moving: bool) -> None:
         """Take an exit point, counted from 0, to (3,) [m], or on the way there."""
         faults: list[Fault] = []
-        self.do(
-            lambda session: faults.extend(session.move_exit_point(number, position_m)),
-            moving=moving,
-        )
-        if moving:
-            return
-        self.do(lambda session: session.settle())
-        for fault in faults:
-            self.message.emit(str(fault))
+        self.do(lambda s: faults.extend(s.move_exit_point(number, position_m)), moving=moving)
+        if not moving:
+            self.do(lambda session: session.settle())
+            self._tell(faults)
 
     def shift(self, offset_m: FloatArray) -> None:
         """Move the platform by (3,) [m]; several shifts are one step to undo."""
@@ -331,6 +327,9 @@ class LiveSession(QObject):
     def keep_pose(self) -> None:
         faults: list[Fault] = []
         self.do(lambda session: faults.extend(session.keep_pose()))
+        self._tell(faults)
+
+    def _tell(self, faults: Iterable[Fault]) -> None:
         for fault in faults:
             self.message.emit(str(fault))
 
@@ -393,13 +392,12 @@ class LiveSession(QObject):
         self._see_pinned()
 
     def _follow_place(self, *, moving: bool) -> None:
-        """The same where only the platform may be elsewhere."""
+        """The same where only the platform may be elsewhere; what may be different is asked for."""
         self.moved.emit()
-        if self.session is not None:
-            self._ask_about(self.session.question(), moving=moving)
-
-    def _ask_about(self, question: Question | None, *, moving: bool) -> None:
-        before, self.question = self.question, question
+        if self.session is None:
+            return
+        before, self.question = self.question, self.session.question()
+        question = self.question
         if question is None:
             return
         self._ages.follow(question)
@@ -420,7 +418,7 @@ class LiveSession(QObject):
         if self.question is not None:
             self._ask(kind, self.question)
 
-    def _ask_whole(self) -> None:
+    def _ask_all(self) -> None:
         if self.question is not None:
             kinds: tuple[Kind, ...] = ("fine", "ropes", "worst")
             for kind in kinds:
@@ -457,21 +455,18 @@ class LiveSession(QObject):
             del self._pending[kind]
         if message.status == "done":
             self._newest[kind] = number
-            self._keep(kind, message.question, message.answer)
+            self.answers[kind] = message.answer
+            for aspect in _SHOWN_AS.get(kind, (kind,)):
+                self.answers[aspect] = message.answer
+                self._ages.renew(aspect, message.question, self.question)
+                if aspect == "ropes":
+                    self._show_best_rope()
             self.answered.emit(kind, message.answer)
         elif message.status == "failed":
             self._tell_failed(kind, message.text)
         self.busy_changed.emit()
 
-    def _keep(self, kind: Kind, question: Question, answer: Any) -> None:
-        self.answers[kind] = answer
-        for aspect in _SHOWN_AS.get(kind, (kind,)):
-            self.answers[aspect] = answer
-            self._ages.renew(aspect, question, self.question)
-            if aspect == "ropes":
-                self._begin_with_best()
-
-    def _begin_with_best(self) -> None:
+    def _show_best_rope(self) -> None:
         """Look at the best of the first candidates, where nobody has chosen another rope."""
         ropes, is_first, self._had_ropes = self.answers["ropes"], not self._had_ropes, True
         best = None if ropes is None else ropes.best

@@ -32,7 +32,7 @@ from PySide6.QtWidgets import (
 
 from designer.explore.desktop.files import Settings
 from designer.explore.desktop.live_session import LiveSession
-from designer.explore.desktop.widgets import beside, button, emptied, fill, label, named
+from designer.explore.desktop.widgets import button, clear_layout, fill, label, named, row_of
 from designer.report import format as fmt
 from designer.resources import example_file, example_names, example_summary
 
@@ -58,8 +58,30 @@ class StartPage(QScrollArea):
         columns.setContentsMargins(28, 24, 28, 24)
         columns.setSpacing(28)
         self._recent = QVBoxLayout()
-        columns.addLayout(self._ways(), 1)
-        columns.addLayout(self._shipped(), 4)
+        left = QVBoxLayout()
+        left.setSpacing(8)
+        question = label("Which cable, how thick, and how sure is that?", "muted")
+        fill(left, label("cdpr-designer", "title"), question)
+        left.addSpacing(12)
+        for name, text, ask, tip in (
+            ("new study", "New study", self.asks_for_new, "A study with a comment to every field"),
+            ("open", "Open a study …", self.asks_for_file, "A study of yours"),
+            ("import", "Import a robot …", self.asks_to_import, "A robot of CASPR or WireX"),
+        ):
+            left.addWidget(button(name, text, ask.emit, tip))
+        left.addSpacing(12)
+        fill(left, label("Recent", "heading"), self._recent, None)
+        shipped, grid = QVBoxLayout(), QGridLayout()
+        grid.setSpacing(12)
+        for number, name in enumerate(example_names()):
+            file = example_file(name)
+            picture = file.parent / "pictures" / f"{name}.png"
+            entry = named(_StudyButton(name, example_summary(name), picture), f"example {name}")
+            entry.clicked.connect(lambda _=False, file=file: self.chosen.emit(file))
+            grid.addWidget(entry, number // _COLUMNS, number % _COLUMNS)
+        fill(shipped, label("Studies to start from", "heading"), grid, None)
+        columns.addLayout(left, 1)
+        columns.addLayout(shipped, 4)
         self.setWidget(inside)
 
     def showEvent(self, event: QShowEvent) -> None:
@@ -67,7 +89,7 @@ class StartPage(QScrollArea):
         super().showEvent(event)
 
     def show_recent(self) -> None:
-        emptied(self._recent)
+        clear_layout(self._recent)
         studies = self._settings.recent
         for path in studies:
             entry = _StudyButton(path.stem, str(path.parent))
@@ -76,38 +98,6 @@ class StartPage(QScrollArea):
             self._recent.addWidget(entry)
         if not studies:
             self._recent.addWidget(label("Studies that you open stand here.", "muted"))
-
-    def _ways(self) -> QVBoxLayout:
-        """How to begin; the keys of that are those of the menu."""
-        column = QVBoxLayout()
-        column.setSpacing(8)
-        question = label("Which cable, how thick, and how sure is that?", "muted")
-        fill(column, label("cdpr-designer", "title"), question)
-        column.addSpacing(12)
-        ways = (
-            ("new study", "New study", self.asks_for_new, "A study with a comment to every field"),
-            ("open", "Open a study …", self.asks_for_file, "A study of yours"),
-            ("import", "Import a robot …", self.asks_to_import, "A robot of CASPR or WireX"),
-        )
-        fill(column, *(button(name, text, ask.emit, tip) for name, text, ask, tip in ways))
-        column.addSpacing(12)
-        fill(column, label("Recent", "heading"), self._recent, None)
-        return column
-
-    def _shipped(self) -> QVBoxLayout:
-        column = QVBoxLayout()
-        column.addWidget(label("Studies to start from", "heading"))
-        grid = QGridLayout()
-        grid.setSpacing(12)
-        for number, name in enumerate(example_names()):
-            file = example_file(name)
-            picture = file.parent / "pictures" / f"{name}.png"
-            entry = named(_StudyButton(name, example_summary(name), picture), f"example {name}")
-            entry.clicked.connect(lambda _=False, file=file: self.chosen.emit(file))
-            grid.addWidget(entry, number // _COLUMNS, number % _COLUMNS)
-        column.addLayout(grid)
-        column.addStretch(1)
-        return column
 
 
 class _StudyButton(QPushButton):
@@ -122,21 +112,18 @@ class _StudyButton(QPushButton):
         rows = QVBoxLayout(self)
         rows.setContentsMargins(10, 10, 10, 10)
         if picture is not None:
-            rows.addWidget(_picture(picture))
+            image = QLabel()
+            image.setFixedHeight(_PICTURE_PX[1])
+            image.setAlignment(Qt.AlignmentFlag.AlignCenter)
+            pixels = QIcon(str(picture)).pixmap(QSize(*_PICTURE_PX), image.devicePixelRatioF())
+            image.setPixmap(pixels)
+            rows.addWidget(image)
         rows.addWidget(label(name, "heading"))
         text = label(summary, "muted")
         text.setWordWrap(True)
         text.setAlignment(Qt.AlignmentFlag.AlignTop)
         rows.addWidget(text, 1)
         self.setMinimumHeight(rows.sizeHint().height() + (24 if picture else 0))
-
-
-def _picture(file: Path) -> QLabel:
-    label = QLabel()
-    label.setFixedHeight(_PICTURE_PX[1])
-    label.setAlignment(Qt.AlignmentFlag.AlignCenter)
-    label.setPixmap(QIcon(str(file)).pixmap(QSize(*_PICTURE_PX), label.devicePixelRatioF()))
-    return label
 
 
 _PAUSE_MS = 400  #: Nothing was typed for so long: the text is read
@@ -168,7 +155,7 @@ class TextPage(QWidget):
         split.setStretchFactor(0, 4)
         split.setStretchFactor(1, 1)
         rows = QVBoxLayout(self)
-        rows.addLayout(beside(self._heading, None, reload, self.leave))
+        rows.addLayout(row_of(self._heading, None, reload, self.leave))
         rows.addWidget(split, 1)
         live.changed.connect(self._show_text)
         live.flushing.connect(self._flush)

@@ -19,15 +19,13 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from designer.analysis.modes import PlatformModes
 from designer.arrays import FloatArray
-from designer.explore.answers import Here
+from designer.explore.answers import PoseAnswer
 from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.widgets import (
     Column,
     LineEntry,
     Table,
-    beside,
     button,
     check_box,
     current_theme,
@@ -38,6 +36,7 @@ from designer.explore.desktop.widgets import (
     number_column,
     restyle,
     result,
+    row_of,
 )
 from designer.explore.question import cables_words
 from designer.report import format as fmt
@@ -62,17 +61,14 @@ class ModeWindow(QDialog):
         self.words = result("mode words", "muted")
         self.words.setWordWrap(True)
         self.view = ModeView()
-        self.in_scene = check_box(
-            "mode in scene",
-            "Move in the scene as well",
-            self._move_scene,
-            "Platform and cables move there, for as long as this window is open.",
-        )
+        tip = "Platform and cables move there, for as long as this window is open."
+        text = "Move in the scene as well"
+        self.in_scene = check_box("mode in scene", text, self._move_scene, tip)
         column = QVBoxLayout(self)
         for part in (self.chosen, self.view, self.in_scene, self.words):
             column.addWidget(part, int(part is self.view))
         self.chosen.currentIndexChanged.connect(self._choose)
-        self._answer: Here | None = None
+        self._answer: PoseAnswer | None = None
         self._lines: FloatArray | None = None
         self._moves = _NO_MOVES
         live.listen(self._show_here, "here")
@@ -87,14 +83,13 @@ class ModeWindow(QDialog):
         super().hideEvent(event)
 
     def _move_scene(self) -> None:
-        modes, number = (
-            None if self._answer is None else self._answer.modes,
-            self.chosen.currentIndex(),
+        modes = (
+            self._answer.modes if self._answer is not None and self.in_scene.isChecked() else None
         )
-        is_moving = self.in_scene.isChecked() and modes is not None and number >= 0
-        self.moves_in_scene.emit(modes.modes[number].shape if is_moving and modes else None)
+        number = self.chosen.currentIndex()
+        self.moves_in_scene.emit(None if modes is None or number < 0 else modes.modes[number].shape)
 
-    def _show_here(self, answer: Here | None) -> None:
+    def _show_here(self, answer: PoseAnswer | None) -> None:
         self._answer = answer
         if self.isVisible():
             self._show_modes()
@@ -106,7 +101,8 @@ class ModeWindow(QDialog):
         self.chosen.blockSignals(True)
         self.chosen.clear()
         if modes is not None:
-            self.chosen.addItems(_titles(modes))
+            for k, mode in enumerate(modes.modes, start=1):
+                self.chosen.addItem(f"mode {k}: {fmt.number(mode.frequency_Hz, 3)} Hz")
             self.chosen.setCurrentIndex(min(number, len(modes.modes) - 1))
         self.chosen.blockSignals(False)
         self.words.setText(
@@ -171,13 +167,6 @@ class ModeView(QWidget):
             painter.drawLines([QLineF(*ends) for ends in lines.reshape(-1, 4).tolist()])
 
 
-def _titles(modes: PlatformModes) -> list[str]:
-    return [
-        f"mode {number}: {fmt.number(mode.frequency_Hz, 3)} Hz"
-        for number, mode in enumerate(modes.modes, start=1)
-    ]
-
-
 def _columns(unit: str, per_N: float) -> tuple[Column, ...]:
     """The columns, with tensions in a unit."""
 
@@ -187,49 +176,26 @@ def _columns(unit: str, per_N: float) -> tuple[Column, ...]:
     def millimetres(value: float) -> str:
         return fmt.number(1e3 * value, 3)
 
-    return (
-        number_column("#", "number", "The cable, in the order of anchors.", str),
-        number_column(
-            "length\nm",
-            "length_m",
-            "Unstrained length from the exit point to the platform, as the winch pays it out.",
-            lambda value: fmt.fixed(value, 3),
-        ),
-        number_column(
-            f"T exit\n{unit}",
-            "exit_tension_N",
-            "Tension at the exit point, where the winch pulls.",
-            tension,
-        ),
-        number_column(
-            f"T load\n{unit}", "platform_tension_N", "Tension at the platform end.", tension
-        ),
-        number_column(
-            "angle\n°",
-            "angle_rad",
-            "How far below the horizontal the cable leaves its exit point.",
-            lambda value: fmt.fixed(math.degrees(value), 1),
-        ),
-        number_column(
-            "sag\nmm",
-            "sag_m",
-            "Largest distance of the cable from the straight line between its ends.",
-            millimetres,
-        ),
-        number_column(
-            "stretch\nmm",
-            "stretch_m",
-            "How much longer the cable is under its load than unstrained.",
-            millimetres,
-        ),
-        number_column(
-            "used\n%",
-            "utilisation",
-            "Utilisation: largest tension anywhere in the cable over the allowable tension.",
-            lambda value: fmt.fixed(100.0 * value, 1),
-            share=lambda cable: cable.utilisation,
-        ),
-    )
+    return tuple(
+        number_column(f"{title}\n{unit_text}".strip(), name, definition, text, share)
+        for title, unit_text, name, definition, text, share in (
+            ("#", "", "number", "The cable, in the order of anchors.", str, None),
+            ("length", "m", "length_m", "Unstrained length from the exit point to the platform, as "
+             "the winch pays it out.", lambda value: fmt.fixed(value, 3), None),
+            ("T exit", unit, "exit_tension_N", "Tension at the exit point, where the winch pulls.",
+             tension, None),
+            ("T load", unit, "platform_tension_N", "Tension at the platform end.", tension, None),
+            ("angle", "°", "angle_rad", "How far below the horizontal the cable leaves its exit "
+             "point.", lambda value: fmt.fixed(math.degrees(value), 1), None),
+            ("sag", "mm", "sag_m", "Largest distance of the cable from the straight line between "
+             "its ends.", millimetres, None),
+            ("stretch", "mm", "stretch_m", "How much longer the cable is under its load than "
+             "unstrained.", millimetres, None),
+            ("used", "%", "utilisation", "Utilisation: largest tension anywhere in the cable over "
+             "the allowable tension.", lambda value: fmt.fixed(100.0 * value, 1),
+             lambda cable: cable.utilisation),
+        )
+    )  # fmt: skip
 
 
 _COORDINATES = (
@@ -251,7 +217,7 @@ _FACTS = (
 )  # fmt: skip
 
 
-class PanelHere(QWidget):
+class PanelPose(QWidget):
     """Where the platform is and what it asks of the cables."""
 
     def __init__(self, live: LiveSession) -> None:
@@ -276,34 +242,16 @@ class PanelHere(QWidget):
         head.setStretchLastSection(False)
         head.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         head.setSectionResizeMode(head.count() - 1, QHeaderView.ResizeMode.Stretch)
-        keep = button(
-            "keep pose",
-            "Keep as the study's pose",
-            live.keep_pose,
-            "Writes this place under <b>pose:</b> of the study.",
-        )
-        self.modes = ModeWindow(live, self)
-        modes = button(
-            "modes",
-            "Modes…",
-            self.modes.show,
-            "How the platform oscillates here, in a window of its own.",
-        )
+        tip = "Writes this place under <b>pose:</b> of the study."
+        keep = button("keep pose", "Keep as the study's pose", live.keep_pose, tip)
+        self.modes, tip = ModeWindow(live, self), "How the platform oscillates in this pose."
+        modes = button("modes", "Modes…", self.modes.show, tip)
         form = QFormLayout()
         form.setVerticalSpacing(2)
-        for name, title, definition in _FACTS:
-            form.addRow(label(title, "muted", definition), self.facts[name])
+        for fact, text, tip in _FACTS:
+            form.addRow(label(text, "muted", tip), self.facts[fact])
         rows = QVBoxLayout(self)
         rows.setContentsMargins(8, 6, 8, 6)
-        fill(rows, self._coordinates(), self.verdict, self.cautions, form, self.stability)
-        rows.addWidget(self.table, 1)
-        rows.addLayout(beside(keep, modes))
-        live.moved.connect(self._show_place)
-        live.listen(self._show_here, "here")
-        results = self.verdict, self.cautions, self.stability, self.table, *self.facts.values()
-        grey_when_old(live, {"here"}, *results)
-
-    def _coordinates(self) -> QGridLayout:
         grid = QGridLayout()
         grid.setHorizontalSpacing(4)
         for number, (name, unit, definition) in enumerate(_COORDINATES):
@@ -318,7 +266,13 @@ class PanelHere(QWidget):
             grid.addWidget(entry, row, 2 * column + 1)
             self._entries.append(entry)
             self._turn_labels += [title] if row else []
-        return grid
+        fill(rows, grid, self.verdict, self.cautions, form, self.stability)
+        rows.addWidget(self.table, 1)
+        rows.addLayout(row_of(keep, modes))
+        live.moved.connect(self._show_place)
+        live.listen(self._show_here, "here")
+        results = self.verdict, self.cautions, self.stability, self.table, *self.facts.values()
+        grey_when_old(live, {"here"}, *results)
 
     def _show_place(self) -> None:
         """Show where the platform is; an entry that is being written in is left alone."""
@@ -338,7 +292,7 @@ class PanelHere(QWidget):
         for title in self._turn_labels:
             title.setVisible(can_turn)
 
-    def _show_here(self, answer: Here | None) -> None:
+    def _show_here(self, answer: PoseAnswer | None) -> None:
         if answer is None:
             self.table.rows.show(())
             return
@@ -354,7 +308,14 @@ class PanelHere(QWidget):
         self.facts["cables"].setText(cables_words(answer.rope))
         self.facts["diameter"].setText(fmt.millimetres(answer.diameter_m))
         self.facts["tension"].setText(fmt.newtons(answer.max_tension_N))
-        self.facts["stiffness"].setText(_stiffness(answer.stiffness_N_per_m))
+        stiffness = answer.stiffness_N_per_m
+        unit, scale = ("kN/m", 1e-3) if stiffness >= 1e3 else ("N/m", 1.0)
+        text = (
+            f"{fmt.number(scale * stiffness, 3)} {unit}"
+            if math.isfinite(stiffness)
+            else fmt.MISSING
+        )
+        self.facts["stiffness"].setText(text)
         self.stability.setText(answer.stability)
         restyle(self.stability, "role", "fault" if answer.is_stable is False else "")
 
@@ -373,10 +334,3 @@ class PanelHere(QWidget):
         for entry in self._entries:
             entry.setModified(False)
         self._live.move(place)
-
-
-def _stiffness(value: float) -> str:
-    if not math.isfinite(value):
-        return fmt.MISSING
-    unit, scale = ("kN/m", 1e-3) if value >= 1e3 else ("N/m", 1.0)
-    return f"{fmt.number(scale * value, 3)} {unit}"

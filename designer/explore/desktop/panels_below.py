@@ -18,15 +18,16 @@ from designer.explore.desktop.widgets import (
     Column,
     DropDown,
     Table,
-    beside,
     button,
     check_box,
     current_theme,
+    fill,
     grey_when_old,
     number_column,
     panel,
     restyle,
     result,
+    row_of,
 )
 from designer.model.requirement import Answer, Requirement, State
 from designer.report import format as fmt
@@ -52,15 +53,6 @@ def _requirement_rank(requirement: Requirement) -> float:
     return _UNMET_FIRST.index(requirement.state) - 0.9 * nearest
 
 
-def _used(utilisation: float) -> str:
-    return fmt.MISSING if math.isnan(utilisation) else fmt.utilisation(utilisation)
-
-
-def _place_words(requirement: Requirement) -> str:
-    place = "" if requirement.place is None else fmt.position(requirement.place[:3])
-    return ", ".join(filter(None, [place, fmt.printed(requirement.direction)]))
-
-
 REQUIREMENT_COLUMNS = (
     Column("state", lambda r: STATES[r.state], "Whether it holds; what does not, first.",
            _requirement_rank),
@@ -71,10 +63,12 @@ REQUIREMENT_COLUMNS = (
            "What is required, where it comes nearest to failing.", attrgetter("demand"), True),
     Column("capacity", lambda r: with_unit(r.capacity, r.unit), "What there is.",
            attrgetter("capacity"), True),
-    number_column("utilisation", "utilisation", "Up to 100 % where it holds.", _used,
+    number_column("utilisation", "utilisation", "Up to 100 % where it holds.",
+                  lambda v: fmt.MISSING if math.isnan(v) else fmt.utilisation(v),
                   attrgetter("utilisation")),
     number_column("cable", "cable", "The cable that comes nearest to failing.", str),
-    Column("where", _place_words,
+    Column("where", lambda r: ", ".join(filter(None, [
+               "" if r.place is None else fmt.position(r.place[:3]), fmt.printed(r.direction)])),
            "Where the platform is; a click takes it there. Then the direction of wind and inertia, "
            "or the lost cable."),
     Column("what it is", lambda r: fmt.capital(r.remark or r.formula),
@@ -94,18 +88,18 @@ class PanelRequirements(QWidget):
             "all requirements", REQUIREMENT_COLUMNS, _REQUIREMENT_WIDTHS, sorted_by=0
         )
         self.table.rows.bold = lambda requirement: not requirement.holds
-        self.table.rows.hint = _hint
+        self.table.rows.hint = lambda r: (
+            f"{fmt.capital(r.formula)} ({r.source}). {fmt.capital(r.remark)}".strip()
+        )
         self.table.clicked.connect(self._go)
         self.table.activated.connect(self._go)
         self.answer = result("answer")
         self.answer.setText(_NOT_EVALUATED)
+        tip = "Evaluates all requirements, as in the report."
         self.evaluate = button(
-            "evaluate all",
-            "Full selection",
-            lambda: live.begin_long("select"),
-            "Evaluates all that the study asks for, as in the report.",
+            "evaluate all", "Full selection", lambda: live.begin_long("select"), tip
         )
-        panel(self, "requirements", beside(self.answer, self.evaluate), self.table)
+        panel(self, "requirements", row_of(self.answer, self.evaluate), self.table)
         live.listen(self._show_requirements, "select", "requirements")
         grey_when_old(live, {"select"}, self.answer, self.table)
 
@@ -140,11 +134,6 @@ def answer_words(ropes: Ropes) -> str:
     if ropes.answer is Answer.OPEN:
         return f"Open: of {count} {unknown}, the others met."
     return f"No: of {count} {n_failing} not met{f', {unknown}' if n_open else ''}."
-
-
-def _hint(requirement: Requirement) -> str:
-    said = f"{fmt.capital(requirement.formula)} ({requirement.source})."
-    return " ".join(filter(None, [said, fmt.capital(requirement.remark)]))
 
 
 _ALL_MATERIALS, _ALL_MAKERS = "all materials", "all makers"
@@ -189,13 +178,7 @@ ROPE_COLUMNS = (
     _scaled("largest T [kN]", "verification.max_tension_N", 1e-3, 4, "Largest in any cable."),
     _scaled("drum [mm]", "figures.drum_diameter_m", 1e3, 4, "Least diameter of drums and sheaves."),
     _scaled("stiffness [kN/m]", "figures.stiffness_N_per_m", 1e-3, 3, "Least, of the platform."),
-    _scaled(
-        "cost",
-        "figures.cost",
-        1.0,
-        4,
-        "Of all cables; estimated where no grade has a price.",
-    ),
+    _scaled("cost", "figures.cost", 1.0, 4, "Of all cables; estimated where no grade has a price."),
     Column(
         "what became of it",
         attrgetter("reason"),
@@ -226,33 +209,25 @@ class PanelRopes(QWidget):
         for choice in (self.material, self.maker):
             choice.currentTextChanged.connect(self._filter)
         self.only_holding = check_box("only what holds", "only what holds", self._filter)
-        family = button(
-            "no rope",
-            "No rope: the family",
-            lambda: live.choose(None),
-            "Colours the map for the thinnest cable of the configured family at each pose.",
-        )
-        self.select = button(
-            "full selection",
-            "Full selection",
-            lambda: live.begin_long("select"),
+        tip = "Colours the map for the thinnest cable of the configured family at each pose."
+        family = button("no rope", "Use generic cable", lambda: live.choose(None), tip)
+        tip = (
             "Chooses as the report does, between the samples as well, and for groups of cables "
             "where the study has some; then proves that the best holds in all poses, as far as "
-            "the study gives it time. Until then the table holds at the samples.",
+            "the study gives it time. Until then the table holds at the samples."
+        )
+        self.select = button(
+            "full selection", "Full selection", lambda: live.begin_long("select"), tip
         )
         self.answer, self.groups = result("best rope"), result("groups")
-        self.look_at_groups = button(
-            "look at groups",
-            "Look at the groups",
-            self._choose_groups,
-            "Colours the map with each group's own rope.",
-        )
+        tip = "Colours the map with the rope of each group."
+        self.look_at_groups = button("look at groups", "Show the groups", self._choose_groups, tip)
         panel(
             self,
             "ropes",
-            beside(self.material, self.maker, self.only_holding, None, family, self.select),
+            row_of(self.material, self.maker, self.only_holding, None, family, self.select),
             self.answer,
-            beside(self.groups, self.look_at_groups),
+            row_of(self.groups, self.look_at_groups),
             self.table,
         )
         live.listen(self._show_ropes, "ropes", "select")
@@ -354,7 +329,7 @@ class PanelCompare(QWidget):
         self._summary = result("ropes gained and lost")
         self.table = Table("differences", _DIFFERENCE_COLUMNS, (190, 190, 190))
         self.table.rows.hint = lambda r: f"{r.title}: {r.before or '–'} → {r.after or '–'}"
-        above = beside(pin, self._release, self.in_map, None)
+        above = row_of(pin, self._release, self.in_map, None)
         panel(self, "compare", above, self._summary, self.table)
         live.answered.connect(self._show_differences)
         live.changed.connect(self._show_differences)
@@ -402,49 +377,35 @@ class PanelMeasured(QWidget):
         self.channel, self.over = DropDown("channel", 14), DropDown("covariate", 10)
         for box in (self.channel, self.over):
             box.currentIndexChanged.connect(self._draw)
-        self.without = check_box(
-            "without effects",
-            "also without effects",
-            self._draw,
-            "Draws beside them, paler, what a model without the declared effects leaves.",
-        )
+        tip = "Draws, paler, what a model without the declared effects leaves as well."
+        self.without = check_box("without effects", "also without effects", self._draw, tip)
         in_scene = check_box("rows in the scene", "in the scene", self.rows_wanted.emit)
         self.plot, self.summary = ScatterPlot(), result("diagnosis")
         self.summary.setTextFormat(Qt.TextFormat.RichText)
         self.summary.setAlignment(Qt.AlignmentFlag.AlignTop)
-        self._take = button(
-            "take over",
-            "Take over what was found",
-            self._take_over,
+        tip = (
             "Writes the effects into the study as one step, with this state pinned as A: the "
-            "comparison shows map and answer with and without them.",
+            "comparison shows map and answer with and without them."
         )
-        above = beside("Residual of", self.channel, "over", self.over, self.without, in_scene, None)
-        panel(self, "measured", above, self._plot_and_answer())
+        self._take = button("take over", "Take over the effects", self._take_over, tip)
+        area = QScrollArea()  # beside the plot: a long answer shall not squeeze it
+        area.setWidget(self.summary)
+        area.setWidgetResizable(True)
+        area.setFrameShape(QFrame.Shape.NoFrame)
+        tip = "Searches for the physical effects that the model lacks; some minutes."
+        diagnose = button("diagnose", "Diagnose", lambda: live.begin_long("diagnose"), tip)
+        answer, both = QVBoxLayout(), QHBoxLayout()
+        answer.addWidget(area, 1)
+        fill(answer, diagnose, self._take)
+        both.addWidget(self.plot, 2)
+        both.addLayout(answer, 1)
+        above = row_of("Residual of", self.channel, "over", self.over, self.without, in_scene, None)
+        panel(self, "measured", above, both)
         live.listen(self._show_residuals, "residuals")
         live.listen(self._show_diagnosis, "diagnose")
         grey_when_old(live, {"residuals"}, self.plot)
         grey_when_old(live, {"diagnose"}, self.summary)
         self._show_diagnosis(None)
-
-    def _plot_and_answer(self) -> QHBoxLayout:
-        area = QScrollArea()  # beside the plot: a long answer shall not squeeze it
-        area.setWidget(self.summary)
-        area.setWidgetResizable(True)
-        area.setFrameShape(QFrame.Shape.NoFrame)
-        diagnose = button(
-            "diagnose",
-            "Diagnose",
-            lambda: self._live.begin_long("diagnose"),
-            "Searches for the physical effects that the model lacks; some minutes.",
-        )
-        answer, both = QVBoxLayout(), QHBoxLayout()
-        answer.addWidget(area, 1)
-        for part in (diagnose, self._take):
-            answer.addWidget(part)
-        both.addWidget(self.plot, 2)
-        both.addLayout(answer, 1)
-        return both
 
     def _show_residuals(self, residuals: Residuals | None) -> None:
         self._residuals = residuals

@@ -3,7 +3,8 @@
 It draws when something has changed, once a change: first without smoothing of edges, and with it
 when nothing moves any more, since that is eight times the work where there is no graphics card.
 Names, handles, marks and legend lie over it: Qt draws them, sharp at every pixel density, in the
-colours of the window, and without a new frame of the scene."""
+colours of the window, and without a new frame of the scene.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +32,7 @@ from PySide6.QtWidgets import QFormLayout, QFrame, QLabel, QVBoxLayout, QWidget
 from pyvistaqt import QtInteractor
 
 from designer.arrays import BoolArray, FloatArray, IntArray
-from designer.explore.desktop.stage import NEAR_PX, Key, Painting, SceneActors
+from designer.explore.desktop.stage import NEAR_PX, Painting, SceneActors
 from designer.explore.desktop.widgets import current_theme, fill, label
 from designer.report import format as fmt
 from designer.report.figures.colours import Steps
@@ -84,7 +85,12 @@ class Overlay(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        self._draw_names(painter)
+        painter.setPen(QColor(current_theme().muted))
+        for name, position_m in self.names:
+            x, y = self._view().pixels(position_m)
+            width = painter.fontMetrics().horizontalAdvance(name)
+            has_room = x + 6 + width < self.width() - self.legend_px
+            painter.drawText(QPointF(x + 6 if has_room else x - 6 - width, y - 6), name)
         self._draw_worst(painter)
         for place_m in (self.platform_m, self.chosen_m):
             self._draw_handle(painter, place_m)
@@ -94,14 +100,6 @@ class Overlay(QWidget):
             self._write_boxed(painter, place + QPointF(14, 18), text)
         if self.note:
             self._write_boxed(painter, QPointF(10, 10), self.note)
-
-    def _draw_names(self, painter: QPainter) -> None:
-        painter.setPen(QColor(current_theme().muted))
-        for name, place in self.names:
-            x, y = self._view().pixels(place)
-            width = painter.fontMetrics().horizontalAdvance(name)
-            has_room = x + 6 + width < self.width() - self.legend_px
-            painter.drawText(QPointF(x + 6 if has_room else x - 6 - width, y - 6), name)
 
     def _draw_worst(self, painter: QPainter) -> None:
         if self.worst is None:
@@ -207,7 +205,16 @@ class Legend(QFrame):
         for key in keys:
             meaning = label(key.meaning)
             meaning.setWordWrap(True)
-            self._keys.addRow(_swatch(key, painting.is_old), meaning)
+            picture = QPixmap(_BAR_PX, 11)
+            picture.fill(_map_colour(QColor(key.colour), painting.is_old))
+            if key.stripes:
+                painter = QPainter(picture)
+                stripes = QBrush(QColor(key.stripes), Qt.BrushStyle.BDiagPattern)
+                painter.fillRect(picture.rect(), stripes)
+                painter.end()
+            swatch = QLabel()
+            swatch.setPixmap(picture)
+            self._keys.addRow(swatch, meaning)
         self.show()
         self.resize(_WIDTH_PX, self.heightForWidth(_WIDTH_PX))
 
@@ -241,7 +248,7 @@ class ColourBar(QWidget):
 
         painter.setPen(Qt.PenStyle.NoPen)
         for number in range(count):
-            painter.setBrush(_tinted(QColor.fromRgbF(*colours(number)), self._is_old))
+            painter.setBrush(_map_colour(QColor.fromRgbF(*colours(number)), self._is_old))
             painter.drawRect(QRectF(0, at(number + 1), _BAR_PX, height / count + 0.5))
         painter.setPen(QColor(current_theme().ink))
         for number, edge in enumerate(self._steps.edges):
@@ -252,20 +259,7 @@ class ColourBar(QWidget):
                 painter.drawText(place, Qt.AlignmentFlag.AlignVCenter, fmt.trimmed(float(edge), 6))
 
 
-def _swatch(key: Key, is_old: bool) -> QLabel:
-    picture = QPixmap(_BAR_PX, 11)
-    picture.fill(_tinted(QColor(key.colour), is_old))
-    if key.stripes:
-        stripes = QBrush(QColor(key.stripes), Qt.BrushStyle.BDiagPattern)
-        painter = QPainter(picture)
-        painter.fillRect(picture.rect(), stripes)
-        painter.end()
-    swatch = QLabel()
-    swatch.setPixmap(picture)
-    return swatch
-
-
-def _tinted(colour: QColor, is_old: bool) -> QColor:
+def _map_colour(colour: QColor, is_old: bool) -> QColor:
     """Return a colour of the map; grey where that is of an older state."""
     grey = 0.2126 * colour.redF() + 0.7152 * colour.greenF() + 0.0722 * colour.blueF()
     return QColor.fromRgbF(grey, grey, grey) if is_old else colour

@@ -3,7 +3,8 @@
 Each piece is one actor with one mesh, for as long as the window lives. What changes is written into
 the arrays of the mesh on display: a mesh that is added again leaks, and costs some thirty
 milliseconds. The map is a surface of four pieces, coloured by a quantity, hatched where no rope
-serves, grey where poses are left out."""
+serves, grey where poses are left out.
+"""
 
 from __future__ import annotations
 
@@ -37,11 +38,11 @@ if TYPE_CHECKING:
     from pyvista import PolyData
     from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
-    from designer.explore.answers import Here, MapAnswer
+    from designer.explore.answers import MapAnswer, PoseAnswer
     from designer.explore.quantities import Quantity
     from designer.study import Study
 
-CATEGORIES = (
+CATEGORY_COLOURS = (
     "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#7F7F7F",
 )  # fmt: skip
 """Told apart by every kind of colour vision; M. Okabe and K. Ito, Color Universal Design, 2008."""
@@ -128,7 +129,7 @@ class Painting:
     def span(self) -> tuple[float, float]:
         """Of the values that have a colour of their own."""
         if self.is_category:
-            return -0.5, len(CATEGORIES) - 0.5
+            return -0.5, len(CATEGORY_COLOURS) - 0.5
         if self.steps is None:
             return 0.0, 1.0
         return float(self.steps.edges[0]), float(self.steps.edges[-1])
@@ -140,7 +141,7 @@ class Painting:
         from matplotlib.colors import ListedColormap
 
         if self.is_category:
-            colours: Any = ListedColormap(list(CATEGORIES))
+            colours: Any = ListedColormap(list(CATEGORY_COLOURS))
         elif self.steps is None:
             colours = matplotlib.colormaps["viridis"].resampled(2)
         else:
@@ -156,7 +157,7 @@ class Painting:
         change = answer.difference(self.quantity.key) if self.is_difference else None
         scaled = values[self.quantity.key] if change is None else change
         if self.is_category:
-            scaled = np.where(np.isfinite(scaled), np.mod(scaled, len(CATEGORIES)), np.nan)
+            scaled = np.where(np.isfinite(scaled), np.mod(scaled, len(CATEGORY_COLOURS)), np.nan)
         else:
             scaled = scaled * self.quantity.scale
         left_out = values["left_out"] > 0.5
@@ -181,11 +182,11 @@ class Painting:
         values = self.of(answer)
         keys: list[Key] = []
         if self.is_category:
-            labels = category_labels(self.quantity.key, len(CATEGORIES))
+            labels = category_labels(self.quantity.key, len(CATEGORY_COLOURS))
             present = np.unique(values.scaled[np.isfinite(values.scaled)]).astype(int)
             for code, meaning in labels.items():
-                if code % len(CATEGORIES) in present:
-                    keys.append(Key(CATEGORIES[code % len(CATEGORIES)], meaning))
+                if code % len(CATEGORY_COLOURS) in present:
+                    keys.append(Key(CATEGORY_COLOURS[code % len(CATEGORY_COLOURS)], meaning))
         if values.is_unserved.any():
             hatch = current_theme().hatch
             keys.append(Key(hatch[0], "no rope serves", hatch[1]))
@@ -338,7 +339,7 @@ class MapSurface:
     def is_visible(self) -> bool:
         return self.coloured.is_visible
 
-    def put_on(self, theme: Theme) -> None:
+    def follow_theme(self, theme: Theme) -> None:
         import pyvista
 
         self.left_out.colour(theme.left_out)
@@ -353,6 +354,8 @@ class MapSurface:
 
     def put_grids(self, grids_m: Mapping[str, FloatArray]) -> None:
         """Take the positions of grids, each (n, m, 3) [m]."""
+        import pyvista
+
         points = np.concatenate([np.empty((0, 3)), *(g.reshape(-1, 3) for g in grids_m.values())])
         sizes = tuple((name, grid[..., 0].size) for name, grid in grids_m.items())
         if sizes == self._grids and (points == self._points_m).all():
@@ -367,11 +370,6 @@ class MapSurface:
         self._is_closed = self._seen_inside and len(grids_m) > 1
         if self._is_closed:
             self._faces = _outward(points, self._faces)
-        self._put_points()
-
-    def _put_points(self) -> None:
-        import pyvista
-
         for piece in self.pieces:
             piece.actor.prop.culling = "front" if self._is_closed else "none"
             piece.mesh.copy_from(pyvista.PolyData())
@@ -392,7 +390,11 @@ class MapSurface:
         valued = ~np.isnan(values.scaled)[faces].any(axis=1) & ~left_out
         kinds = (valued, hatched & ~valued, left_out, hatched)
         for piece, chosen in zip(self.pieces, kinds, strict=True):
-            _put_faces(piece.mesh, faces[chosen])
+            piece.mesh.cell_data.clear()
+            piece.mesh.verts = np.empty(0, dtype=np.int64)
+            corners = faces[chosen]
+            sides = np.full((len(corners), 1), 4, dtype=np.int64)
+            piece.mesh.faces = np.hstack([sides, corners]).ravel()
         mesh, mapper = self.coloured.mesh, self.coloured.mapper
         low, high = painting.span
         mapper.lookup_table, mapper.scalar_range = painting.table, (low, high)
@@ -454,13 +456,6 @@ def _write(mesh: Any, name: str, values: FloatArray) -> None:
     mesh.point_data.active_scalars_name = name
 
 
-def _put_faces(mesh: Any, faces: Faces) -> None:
-    mesh.cell_data.clear()
-    mesh.verts = np.empty(0, dtype=np.int64)
-    sides = np.full((len(faces), 1), 4, dtype=np.int64)
-    mesh.faces = np.hstack([sides, faces]).ravel()
-
-
 def _outward(points_m: FloatArray, faces: Faces) -> Faces:
     """Corners of faces of a convex body in the order that shows their fronts outside."""
     corners = points_m[faces]
@@ -514,7 +509,7 @@ class SceneActors:
     def follow_theme(self) -> None:
         colours = current_theme()
         for surface in self.map_surfaces:
-            surface.put_on(colours)
+            surface.follow_theme(colours)
         pieces_by_colour: Mapping[str, list[Any]] = {
             colours.border: [self.floor],
             colours.muted: [self.region, self.base, self.posts, self.chords],
@@ -551,7 +546,7 @@ class SceneActors:
         self._edges = hull_edges(robot.attachments_m, self._faces)
 
     def put_place(
-        self, study: Study, place: FloatArray, answer: Here | None, factor: float
+        self, study: Study, place: FloatArray, answer: PoseAnswer | None, factor: float
     ) -> None:
         """Show platform and cables; without an answer yet, the cables straight.
 

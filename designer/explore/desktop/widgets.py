@@ -129,41 +129,26 @@ def current_theme() -> Theme:
 
 
 def apply_theme(app: QApplication, theme: Theme) -> None:
-    """Give the whole application the colours of a theme."""
-    app.setProperty("theme", theme.name)
-    app.setPalette(_palette(theme))
-    app.setStyleSheet(_sheet(theme))
-
-
-def _palette(theme: Theme) -> QPalette:
-    role, colours = QPalette.ColorRole, QPalette()
-    accent = QColor(theme.accent)
-    everywhere = {
-        role.Window: theme.window,
-        role.Base: theme.base,
-        role.AlternateBase: theme.stripe,
-        role.Button: theme.raised,
-        role.ToolTipBase: theme.raised,
-        role.WindowText: theme.ink,
-        role.Text: theme.ink,
-        role.ButtonText: theme.ink,
-        role.ToolTipText: theme.ink,
-        role.BrightText: theme.warning,
-        role.PlaceholderText: theme.muted,
-        role.Mid: theme.border,
-        role.Dark: theme.border,
-        role.Midlight: theme.border,
-        role.Light: theme.raised,
-        role.Highlight: accent,
-        role.HighlightedText: "#ffffff" if theme.name == "light" else "#10151a",
-        role.Link: accent,
-        role.Accent: accent,
-    }
-    for which, colour in everywhere.items():
-        colours.setColor(which, QColor(colour))
+    role, palette_of_theme = QPalette.ColorRole, QPalette()
+    for colour, roles in (
+        (theme.window, [role.Window]),
+        (theme.base, [role.Base]),
+        (theme.stripe, [role.AlternateBase]),
+        (theme.raised, [role.Button, role.ToolTipBase, role.Light]),
+        (theme.ink, [role.WindowText, role.Text, role.ButtonText, role.ToolTipText]),
+        (theme.warning, [role.BrightText]),
+        (theme.muted, [role.PlaceholderText]),
+        (theme.border, [role.Mid, role.Dark, role.Midlight]),
+        (theme.accent, [role.Highlight, role.Link, role.Accent]),
+        ("#ffffff" if theme.name == "light" else "#10151a", [role.HighlightedText]),
+    ):
+        for which in roles:
+            palette_of_theme.setColor(which, QColor(colour))
     for which in (role.WindowText, role.Text, role.ButtonText):
-        colours.setColor(QPalette.ColorGroup.Disabled, which, QColor(theme.muted))
-    return colours
+        palette_of_theme.setColor(QPalette.ColorGroup.Disabled, which, QColor(theme.muted))
+    app.setProperty("theme", theme.name)
+    app.setPalette(palette_of_theme)
+    app.setStyleSheet(_sheet(theme))
 
 
 def _sheet(theme: Theme) -> str:
@@ -238,7 +223,7 @@ def check_box(name: str, text: str, run: Callable[..., object], tip: str = "") -
     return box
 
 
-def beside(*parts: Part) -> QHBoxLayout:
+def row_of(*parts: Part) -> QHBoxLayout:
     line = QHBoxLayout()
     fill(line, *parts)
     return line
@@ -325,7 +310,7 @@ class DropDown(QComboBox):
         super().showPopup()
 
 
-def emptied(layout: QBoxLayout) -> QBoxLayout:
+def clear_layout(layout: QBoxLayout) -> QBoxLayout:
     """Take everything out of a layout; what was in it is gone from sight at once."""
     while (item := layout.takeAt(0)) is not None:
         widget = item.widget()
@@ -350,7 +335,7 @@ class Notice(QFrame):
 
     def show_text(self, text: str, buttons: tuple[str, ...]) -> None:
         """Show a line with buttons by these names; nothing for no text."""
-        emptied(self._row)
+        clear_layout(self._row)
         line = QLabel(text)
         line.setWordWrap(True)
         self._row.addWidget(line, 1)

@@ -60,7 +60,7 @@ _EXPORTS: tuple[tuple[str, What, str, str, str], ...] = (
     ("MuJoCo", "mujoco", "M&uJoCo …", "", "An MJCF model"),
     ("glTF", "gltf", "&glTF …", "", "What the report draws in space"),
 )
-PANELS = ("Study", "Here", "Ropes", "Requirements", "Compare", "Measured data", "Messages")
+PANELS = ("Study", "This pose", "Ropes", "Requirements", "Compare", "Measured data", "Messages")
 _THEMES = {"system": "As the system", "light": "Light", "dark": "Dark"}
 HINT = (
     "Drag the ring to move the platform, its arrow to lift it; click the map to go there; "
@@ -85,7 +85,7 @@ KEYS = (
     ("Drag elsewhere", "turns the view; with Shift or the right button shifts it"),
     ("Wheel", "zooms at the mouse"),
     ("Home", "looks at everything again"),
-    ("Ctrl + 1 … 7", "choose what the map is coloured by"),
+    ("Ctrl + 1 … 8", "choose what the map is coloured by"),
 )
 
 
@@ -116,10 +116,33 @@ class Menus:
     def __init__(self, window: Window) -> None:
         self._window = window
         self.actions: dict[str, QAction] = {}
+        live = window.live
         self._file_menu()
-        self._edit_menu()
+        self._add(
+            self._menu("&Edit", "edit menu"),
+            Command("undo", "&Undo", "Ctrl+Z", "Take back the last step",
+                    lambda: live.do(lambda session: session.undo()), _KEY.Undo),
+            Command("redo", "&Redo", "Ctrl+Shift+Z", "Do it again",
+                    lambda: live.do(lambda session: session.redo()), _KEY.Redo),
+            None,
+            Command("put all back", "&Put everything back", "",
+                    "Make the whole study as the file has it", live.put_all_back),
+        )  # fmt: skip
         self._view_menu()
-        self._platform_menu()
+        self._add(
+            self._menu("&Platform", "platform menu"),
+            Command("to worst", "To the &worst pose", "Ctrl+G",
+                    "Where the rope's utilisation is largest", live.to_worst),
+            Command("to pose", "To the &pose of the study", "Ctrl+Shift+G", "As configured",
+                    live.to_pose),
+            None,
+            Command("pin", "P&in this state as A", "Ctrl+D", "Compare with it from now on",
+                    live.pin),
+            Command("release", "&Release A", "Ctrl+Shift+D", "Compare with nothing", live.release),
+            None,
+            Command("keep pose", "&Keep as the pose of the study", "Ctrl+K",
+                    "Writes this place under `pose`", live.keep_pose),
+        )  # fmt: skip
         self._add(
             self._menu("&Tools", "tools menu"),
             Command("optimise", "&Optimise …", "Ctrl+Shift+O",
@@ -136,9 +159,8 @@ class Menus:
             Command("about", "&About cdpr-designer", "", "Version and licence",
                     lambda: show_about(window)),
         )  # fmt: skip
-        for signal in (window.live.changed, window.live.moved, window.live.answered):
+        for signal in (live.changed, live.moved, live.answered, live.quantity_changed):
             signal.connect(self.refresh)
-        window.live.quantity_changed.connect(self.refresh)
 
     def _menu(self, title: str, name: str) -> QMenu:
         menu = self._window.menuBar().addMenu(title)
@@ -148,6 +170,13 @@ class Menus:
     def _file_menu(self) -> None:
         window, files = self._window, self._window.files
         menu = self._menu("&File", "file menu")
+
+        def export(content: What) -> None:
+            if content == "picture":
+                files.save_picture(window.work.scene)
+            else:
+                files.export(content)
+
         self._add(
             menu,
             Command("new", "&New", "Ctrl+N", "A study with a comment to every field",
@@ -176,8 +205,7 @@ class Menus:
         self._add(
             menu.addMenu("E&xport"),
             *(
-                Command(f"export {name}", text, keys, tip,
-                        partial(self._export, content))
+                Command(f"export {name}", text, keys, tip, partial(export, content))
                 for name, content, text, keys, tip in _EXPORTS
             ),
             Command("export lengths", "Lengths at &poses …", "", "At the poses of a table",
@@ -194,19 +222,6 @@ class Menus:
             Command("quit", "&Quit", "Ctrl+Q", "End the program", window.close, _KEY.Quit),
         )  # fmt: skip
 
-    def _edit_menu(self) -> None:
-        live = self._window.live
-        self._add(
-            self._menu("&Edit", "edit menu"),
-            Command("undo", "&Undo", "Ctrl+Z", "Take back the last step",
-                    lambda: live.do(lambda session: session.undo()), _KEY.Undo),
-            Command("redo", "&Redo", "Ctrl+Shift+Z", "Do it again",
-                    lambda: live.do(lambda session: session.redo()), _KEY.Redo),
-            None,
-            Command("put all back", "&Put everything back", "",
-                    "Make the whole study as the file has it", live.put_all_back),
-        )  # fmt: skip
-
     def _view_menu(self) -> None:
         window = self._window
         menu = self._menu("&View", "view menu")
@@ -216,15 +231,19 @@ class Menus:
         self.quantities = self._options(colours, names, window.live.colour_by)
         for quantity in QUANTITIES:
             self.quantities[quantity.key].setToolTip(quantity.definition)
+
+        def look_from(view: str) -> None:
+            window.work.look(view)
+
         views = (
-            Command(f"look {view}", text, keys, tip, partial(self._look, view))
+            Command(f"look {view}", text, keys, tip, partial(look_from, view))
             for view, text, keys, tip in _VIEWS
         )
         self._add(menu, None, *views, None)
         look = menu.addMenu("&Theme")
         look.setObjectName("theme")
         options = [(name, _THEMES[name], "") for name in THEME_CHOICES]
-        self.themes = self._options(look, options, window.put_on)
+        self.themes = self._options(look, options, window.apply_theme)
         panels = menu.addMenu("&Panels")
         for name in PANELS:
             is_shown = name not in window.settings.hidden_panels
@@ -233,32 +252,6 @@ class Menus:
             action.toggled.connect(window.show_panels)
             panels.addAction(action)
             self.actions[f"panel {name}"] = action
-
-    def _platform_menu(self) -> None:
-        live = self._window.live
-        self._add(
-            self._menu("&Platform", "platform menu"),
-            Command("to worst", "To the &worst pose", "Ctrl+G", "Where most is asked of the rope",
-                    live.to_worst),
-            Command("to pose", "To the &pose of the study", "Ctrl+Shift+G", "As configured",
-                    live.to_pose),
-            None,
-            Command("pin", "P&in this state as A", "Ctrl+D", "Compare with it from now on",
-                    live.pin),
-            Command("release", "&Release A", "Ctrl+Shift+D", "Compare with nothing", live.release),
-            None,
-            Command("keep pose", "&Keep as the pose of the study", "Ctrl+K",
-                    "Writes this place under `pose`", live.keep_pose),
-        )  # fmt: skip
-
-    def _export(self, content: What) -> None:
-        if content == "picture":
-            self._window.files.save_picture(self._window.work.scene)
-        else:
-            self._window.files.export(content)
-
-    def _look(self, view: str) -> None:
-        self._window.work.look(view)
 
     def _add(self, menu: QMenu, *commands: Command | None) -> None:
         """Put commands into a menu; None is a line between them."""
@@ -372,7 +365,7 @@ _HINT_MS = 20_000  #: The hint stays longer than a message: a newcomer looks at 
 _MESSAGE_MS = 15_000  #: Long enough to be read twice; what matters stays among the messages
 _AREAS = {
     "Study": Qt.DockWidgetArea.LeftDockWidgetArea,
-    "Here": Qt.DockWidgetArea.RightDockWidgetArea,
+    "This pose": Qt.DockWidgetArea.RightDockWidgetArea,
 }
 _BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
 _SIDES_PX = (252, 400)
@@ -389,7 +382,10 @@ class Window(QMainWindow):
         self.setObjectName("window")
         self.settings, self.live = settings, LiveSession()
         self.files = Files(self, self.live, settings, with_plugins=with_plugins)
-        self.start, self.messages = StartPage(settings), _messages()
+        self.start = StartPage(settings)
+        self.messages = named(QPlainTextEdit(readOnly=True), "messages")
+        self.messages.setMaximumBlockCount(500)  # a session of days shall not fill the memory
+        self.messages.setTabChangesFocus(True)
         self.pages = QStackedWidget()
         self.pages.addWidget(self.start)
         self.setCentralWidget(self.pages)
@@ -397,16 +393,29 @@ class Window(QMainWindow):
         self.status = StatusBar(self.live)
         self.setStatusBar(self.status)
         self.menus = Menus(self)
-        self._connect()
-        self._restore()
-        self._show_page(self.start)
+        live, files, start = self.live, self.files, self.start
+        live.opened.connect(self._show_opened)
+        live.changed.connect(self._show_modified)
+        live.message.connect(self.messages.appendPlainText)
+        start.chosen.connect(files.open)
+        start.asks_for_file.connect(files.ask_and_open)
+        start.asks_for_new.connect(files.new)
+        start.asks_to_import.connect(files.ask_and_import)
+        files.opening.connect(self._begin_to_open)
+        files.not_opened.connect(start.show_recent)
+        self.resize(1280, 800)
+        self.restoreGeometry(settings.bytes_of("geometry"))
+        self.apply_theme(settings.theme)
+        hints = QApplication.styleHints()
+        hints.colorSchemeChanged.connect(lambda _: self.apply_theme(settings.theme))
+        self._show_page(start)
 
-    def furnish(self) -> None:
+    def create_panels(self) -> None:
         """Make what a study is shown in, once: its libraries take longer than the start page."""
         if self.docks:
             return
         from designer.explore.desktop.pages import TextPage
-        from designer.explore.desktop.panel_pose import PanelHere
+        from designer.explore.desktop.panel_pose import PanelPose
         from designer.explore.desktop.panel_study import PanelStudy
         from designer.explore.desktop.panels_below import (
             PanelCompare,
@@ -420,53 +429,36 @@ class Window(QMainWindow):
         self.work, self.text = WorkPage(live), TextPage(live)
         for page in (self.work, self.text):
             self.pages.addWidget(page)
-        self.study_panel, self.here, self.ropes = (
+        self.study_panel, self.pose, self.ropes = (
             PanelStudy(live),
-            PanelHere(live),
+            PanelPose(live),
             PanelRopes(live),
         )
         self.requirements, self.compare = PanelRequirements(live), PanelCompare(live)
-        self.measured = PanelMeasured(live)
-        panels = (self.study_panel, self.here, self.ropes, self.requirements, self.compare)
-        self._put_docks(*panels, self.measured, self.messages)
-        files.notice.connect(self.work.show_notice)
-        self.work.notice_answered.connect(files.answer_notice)
-        self.text.asks_to_reload.connect(files.reload)
-        self.text.asks_to_leave.connect(self.show_work)
-        self.measured.rows_wanted.connect(self.work.want_rows)
-        self.here.modes.moves_in_scene.connect(self.work.play_mode)
-        live.taken_over.connect(self.docks["Compare"].raise_)
-        self.restoreState(self.settings.bytes_of("layout"))
-        self._show_page(self.start)
-        self.work.follow_theme()
-
-    def _put_docks(self, *panels: QWidget) -> None:
-        """Put the panels around the scene; those below it share one place."""
-        docks = self.docks
-        for title, panel in zip(PANELS, panels, strict=True):
+        self.measured, docks = PanelMeasured(live), self.docks
+        panels = (self.study_panel, self.pose, self.ropes, self.requirements, self.compare)
+        for title, panel in zip(PANELS, (*panels, self.measured, self.messages), strict=True):
             dock = QDockWidget(title, self)
             dock.setObjectName(f"dock {title}")
             dock.setFeatures(dock.features() & ~QDockWidget.DockWidgetFeature.DockWidgetClosable)
             dock.setWidget(panel)
             self.addDockWidget(_AREAS.get(title, _BELOW), dock)
             docks[title] = dock
-            if title not in (*_AREAS, "Ropes"):
+            if title not in (*_AREAS, "Ropes"):  # those below the scene share one place
                 self.tabifyDockWidget(docks["Ropes"], dock)
         docks["Ropes"].raise_()
         self.setCorner(Qt.Corner.BottomLeftCorner, _AREAS["Study"])
         self.setCorner(Qt.Corner.BottomRightCorner, _BELOW)  # tables are wide
-
-    def _connect(self) -> None:
-        live, files = self.live, self.files
-        live.opened.connect(self._opened)
-        live.changed.connect(self._show_modified)
-        live.message.connect(self.messages.appendPlainText)
-        self.start.chosen.connect(files.open)
-        self.start.asks_for_file.connect(files.ask_and_open)
-        self.start.asks_for_new.connect(files.new)
-        self.start.asks_to_import.connect(files.ask_and_import)
-        files.opening.connect(self._begin_to_open)
-        files.not_opened.connect(self.start.show_recent)
+        files.notice.connect(self.work.show_notice)
+        self.work.notice_answered.connect(files.answer_notice)
+        self.text.asks_to_reload.connect(files.reload)
+        self.text.asks_to_leave.connect(self.show_work)
+        self.measured.rows_wanted.connect(self.work.want_rows)
+        self.pose.modes.moves_in_scene.connect(self.work.play_mode)
+        live.taken_over.connect(self.docks["Compare"].raise_)
+        self.restoreState(self.settings.bytes_of("layout"))
+        self._show_page(self.start)
+        self.work.follow_theme()
 
     # Pages
 
@@ -475,9 +467,9 @@ class Window(QMainWindow):
         if not self.docks:
             self.status.showMessage(f"Opening {name} …")
             self.status.repaint()
-            self.furnish()
+            self.create_panels()
 
-    def _opened(self) -> None:
+    def _show_opened(self) -> None:
         """Show the study that was opened; the start page for none."""
         session = self.live.session
         self._show_modified()
@@ -516,7 +508,7 @@ class Window(QMainWindow):
             has_any = name != "Measured data" or has_data
             dock.setVisible(at_work and has_any and self.menus.wants_panel(name))
         if at_work and self.settings.bytes_of("layout").isEmpty():
-            sides = [self.docks["Study"], self.docks["Here"]]
+            sides = [self.docks["Study"], self.docks["This pose"]]
             self.resizeDocks(sides, list(_SIDES_PX), Qt.Orientation.Horizontal)
             below = round(_BELOW_SHARE * self.height())
             self.resizeDocks([self.docks["Ropes"]], [below], Qt.Orientation.Vertical)
@@ -536,7 +528,7 @@ class Window(QMainWindow):
 
     # Look, and the end
 
-    def put_on(self, choice: str) -> None:
+    def apply_theme(self, choice: str) -> None:
         """Take the colours of a theme, or those of the system."""
         self.settings.theme = choice
         app = QApplication.instance()
@@ -545,13 +537,6 @@ class Window(QMainWindow):
         if self.docks:
             self.work.follow_theme()
         self.menus.refresh()
-
-    def _restore(self) -> None:
-        self.resize(1280, 800)
-        self.restoreGeometry(self.settings.bytes_of("geometry"))
-        self.put_on(self.settings.theme)
-        hints = QApplication.styleHints()
-        hints.colorSchemeChanged.connect(lambda _: self.put_on(self.settings.theme))
 
     def closeEvent(self, event: QCloseEvent) -> None:
         if not self.files.may_leave():
@@ -562,20 +547,12 @@ class Window(QMainWindow):
         if self.docks and self.pages.currentWidget() is self.work:
             self.settings.keep_bytes("layout", self.saveState())
         if self.docks:  # nothing moves any more
-            self.here.modes.close()
+            self.pose.modes.close()
             self.work.plays_path.setChecked(False)
         self.live.close()
         if self.docks:
             self.work.scene.close()
         event.accept()
-
-
-def _messages() -> QPlainTextEdit:
-    messages = QPlainTextEdit(readOnly=True)
-    messages.setObjectName("messages")
-    messages.setMaximumBlockCount(500)  # a session of days shall not fill the memory
-    messages.setTabChangesFocus(True)
-    return messages
 
 
 class StatusBar(QStatusBar):
@@ -588,14 +565,11 @@ class StatusBar(QStatusBar):
         self.addPermanentWidget(self._busy)
         self.addPermanentWidget(self.long)
         live.busy_changed.connect(self._show_busy)
-        live.message.connect(self._show_message)
+        live.message.connect(lambda text: self.showMessage(text.partition("\n")[0], _MESSAGE_MS))
 
     def _show_busy(self) -> None:
         short = sorted({NAMES[kind] for kind in self._live.busy if kind not in LONG})
         self._busy.setText(f"solving {', '.join(short)} …" if short else "")
-
-    def _show_message(self, text: str) -> None:
-        self.showMessage(text.splitlines()[0] if text else "", _MESSAGE_MS)
 
 
 class LongWork(QWidget):
@@ -613,7 +587,7 @@ class LongWork(QWidget):
         cancel = named(QToolButton(), "cancel", "End this work (Ctrl+.)")
         cancel.setText("Cancel")
         cancel.setShortcut("Ctrl+.")
-        cancel.clicked.connect(self._cancel)
+        cancel.clicked.connect(lambda: None if self._kind is None else live.cancel(self._kind))
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 6, 0)
         fill(row, self._task, self._bar, cancel)
@@ -628,12 +602,7 @@ class LongWork(QWidget):
         self._bar.setRange(0, 0)
         self.show()
 
-    def _cancel(self) -> None:
-        if self._kind is not None:
-            self._live.cancel(self._kind)
-
     def _progress(self, kind: str, task: str, steps: int, total: int) -> None:
-        """Show how far it is; a total of 0 is not known."""
         if kind == self._kind:
             self._task.setText(task)
             self._bar.setRange(0, max(total, 0))
@@ -642,9 +611,9 @@ class LongWork(QWidget):
     def _end(self) -> None:
         if self._kind is None or self._kind in self._live.busy:
             return
-        others = [kind for kind in LONG if kind in self._live.busy]
-        if others:
-            self._begin(others[0])
+        running = [kind for kind in LONG if kind in self._live.busy]
+        if running:
+            self._begin(running[0])
         else:
             self._kind = None
             self.hide()

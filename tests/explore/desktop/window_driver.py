@@ -58,7 +58,7 @@ class Driver:
 
     def reset(self) -> None:
         """Show what is shown at first."""
-        self.window.furnish()
+        self.window.create_panels()
         work = self.window.work
         self.window.live.session = None
         for box in (work.surface, work.slice):
