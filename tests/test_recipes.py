@@ -14,7 +14,7 @@ import designer
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
 from designer.arrays import FloatArray
-from designer.explore.ropes import full_ropes
+from designer.explore.answers import full_ropes
 from designer.explore.session import Session
 from designer.model.load_case import Loaded
 from designer.model.robot import Poses, Robot

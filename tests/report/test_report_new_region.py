@@ -10,7 +10,7 @@ import pytest
 
 import designer
 from designer.arrays import FloatArray
-from designer.explore.map import map_grids
+from designer.explore.answers import map_grids
 from designer.model.region import Border, Prism, Region
 from designer.model.space import Orientations, Space
 from designer.proof.encloser import why_not
