@@ -19,7 +19,7 @@ from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.progress import SILENT, Reporter
 from designer.selection.candidate import undominated
-from designer.selection.cases import Cases, governing, searched_all, together
+from designer.selection.cases import Cases, envelope, governing, refine_all
 from designer.selection.groups.trials import verify_groups
 from designer.selection.verify import Verification
 from designer.statics.inverse import Statics, sag_ratio, solve_sagging
@@ -289,11 +289,11 @@ def worst_answer(question: Question, reporter: Reporter = SILENT) -> WorstAnswer
 def _met_in_cases(question: Question, workspace: Workspace, rope: Rope) -> tuple[Verification, str]:
     """Return what a rope meets in all load cases, and that which governs; as the report does."""
     cases = Cases(question.robot, workspace, question.study.load_cases or (STATIC,))
-    cables = [[question.cable_in(case, rope)] for case in cases.each]
+    cables = [[question.cable_in(case, rope)] for case in cases.load_cases]
     (found,) = cases.sampled(cables, lambda _: None)
-    found = searched_all(found)
+    found = refine_all(found)
     case = governing(found).case
-    return together(found), "" if case is STATIC else f" in the load case '{case.name}'"
+    return envelope(found), "" if case is STATIC else f" in the load case '{case.name}'"
 
 
 def _met(question: Question, workspace: Workspace, cable: Cable | Cables) -> Verification:
