@@ -33,7 +33,7 @@ from designer.progress import SILENT, Reporter
 from designer.proof.prove import Proof
 from designer.report import format as fmt
 from designer.selection.candidate import Candidate, undominated
-from designer.selection.cases import Cases, governing, searched_all, together
+from designer.selection.cases import Cases, envelope, governing, refine_all
 from designer.selection.compare import burdens, is_undominated, rejection_words
 from designer.selection.groups.result import GroupChoice
 from designer.selection.groups.trials import verify_groups
@@ -445,11 +445,11 @@ def worst_answer(question: Question, reporter: Reporter = SILENT) -> WorstAnswer
     of_case = ""
     if isinstance(question.rope, Rope):  # in all load cases, as the report does
         cases = Cases(question.robot, workspace, question.study.load_cases or (STATIC,))
-        cables = [[question.cable_in(case, question.rope)] for case in cases.each]
+        cables = [[question.cable_in(case, question.rope)] for case in cases.load_cases]
         (sampled,) = cases.sampled(cables, lambda _: None)
-        searched = searched_all(sampled)
+        searched = refine_all(sampled)
         case = governing(searched).case
-        verification = together(searched)
+        verification = envelope(searched)
         of_case = "" if case is STATIC else f" in the load case '{case.name}'"
     else:
         verification = _verify_groups(question, workspace, question.cable)

@@ -25,10 +25,9 @@ from designer.model.workspace import Workspace
 from designer.plugins import Plugins
 from designer.progress import Advance
 from designer.selection.candidate import Candidate, candidates_of
-from designer.selection.cases import FEW_AT_FIRST
+from designer.selection.cases import FEW_AT_FIRST, converge_stiffness
 from designer.selection.efficiency import Allowance
 from designer.selection.select import at_samples
-from designer.selection.stiffening import as_it_meets
 from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Study, as_built_by, require_enough_cables
 from designer.workspace.section import section_of_pose
@@ -170,7 +169,7 @@ class Question:
         if cable.stiffening is None:
             return cable
         if self.workspace is None:
-            return as_it_meets(
+            return converge_stiffness(
                 cable,
                 lambda stiffened: float(
                     solve_sagging(self.robot, self.pose, stiffened).largest_tension_N

@@ -213,7 +213,7 @@ class RelativeStiffness:
     """Axial stiffness EA of a worked-in rope over its minimum breaking load.
 
     A sagging cable is computed with one EA. It is the one at the largest tension that the rope
-    meets in a load case, see `designer.selection.stiffening`; of a continuous family the one at
+    meets in a load case, see `designer.selection.cases`; of a continuous family the one at
     its allowable tension, which its thinnest member meets. Strain at low load, and stretch that
     does not come back, are not in it.
     """

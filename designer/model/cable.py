@@ -90,7 +90,7 @@ class Cable:
         Strain per change of temperature [1/K].
     stiffening : Stiffening or None
         How EA depends on the tension; None where it does not. ``axial_stiffness_N`` is then one
-        value of it, which `designer.selection.stiffening` takes at the largest tension met.
+        value of it, which `designer.selection.cases` takes at the largest tension met.
     attached : tuple of Attached
         What is clipped along it, see `AttachedEach`; all other figures but the mass are those of
         the rope alone.

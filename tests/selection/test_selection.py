@@ -14,8 +14,8 @@ from designer.model.region import PointList, Prism
 from designer.model.robot import Poses
 from designer.model.workspace import Workspace
 from designer.selection.assignment import for_all
+from designer.selection.cases import over_samples
 from designer.selection.result import GradeOutcome
-from designer.selection.samples import over_samples
 from designer.selection.select import select
 from designer.selection.verify import verify
 from designer.sizing.newton import size_poses

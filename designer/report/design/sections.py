@@ -32,10 +32,10 @@ from designer.report.document import MOST_ROWS
 from designer.report.figures.charts_selection import rank
 from designer.report.templates import Statement, plain_statement
 from designer.selection.candidate import Candidate
+from designer.selection.cases import FEW_SAMPLES
 from designer.selection.efficiency import Allowance
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import GradeOutcome, SelectionResult
-from designer.selection.samples import FEW_SAMPLES
 from designer.sizing.loop import Iterate, LoopSizing
 from designer.statics.cable_loss import Fate
 from designer.study import Entry, Study, rope_effects
