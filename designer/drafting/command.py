@@ -151,7 +151,7 @@ def _choose(figure: str, heads: Sequence[str], why: str) -> int | None:
 def _units(table: MakerTable, named: Mapping[str, str]) -> dict[str, str]:
     """Return the unit of each figure: as an option has it, as the table prints it, or as asked."""
     from designer.drafting.maker_table import SIZE, known_unit
-    from designer.grades.parts import DIMENSIONS
+    from designer.grades.grade import DIMENSIONS
 
     units: dict[str, str] = {}
     faults = []

@@ -27,7 +27,7 @@ def register_grades() -> list[Path | Grade]:
 @cache
 def _grades() -> tuple[Path | Grade, ...]:
     """Read them once; the folder itself where a file is faulty, so that the fault is told."""
-    from designer.grades.files import read_grades
+    from designer.grades.registry import read_grades
     from designer.grades.standard_rope import standard_ropes
 
     folder = data_folder("catalog")
