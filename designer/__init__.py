@@ -12,7 +12,7 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "designer.api": "analyse catalogue compare diagnose find_poses follow lengths read_study size"
-    " sweep write_report",
+    " write_report",
     "designer.analysis.analyse": "Analysis",
     "designer.analysis.comparison": "Comparison",
     "designer.analysis.lengths": "FoundPoses Lengths",
@@ -34,6 +34,7 @@ _HOMES = {
     "designer.model.workspace": "Workspace",
     "designer.optimum.optimise": "Optimum optimise",
     "designer.resources": "example_file example_names",
+    "designer.sweeps.run": "sweep",
     "designer.study": "CableGroup DeclaredEffect RopeLimits Selection Study",
 }
 """Where the public names are defined, those of each module separated by spaces."""
@@ -54,7 +55,6 @@ if TYPE_CHECKING:
         lengths,
         read_study,
         size,
-        sweep,
         write_report,
     )
     from designer.diagnosis.result import Diagnosis
@@ -75,6 +75,7 @@ if TYPE_CHECKING:
     from designer.optimum.optimise import Optimum, optimise
     from designer.resources import example_file, example_names
     from designer.study import CableGroup, DeclaredEffect, RopeLimits, Selection, Study
+    from designer.sweeps.run import sweep
 
 __all__ = [
     "Analysis",

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from designer.analysis.analyse import Analysis, TemporaryFolder
+from designer.analysis.analyse import Analysis
 from designer.analysis.analyse import analyse as analyse_study
 from designer.analysis.comparison import Comparison
 from designer.analysis.comparison import compare as compare_results
@@ -33,9 +33,6 @@ from designer.progress import SILENT, Reporter
 from designer.report.render import write_report as write_analysis
 from designer.study import Study
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 AnyStudy = Study | Path | str
 """A study, or the path of its file."""
 Answer = TypeVar("Answer")
@@ -50,7 +47,6 @@ __all__ = [
     "lengths",
     "read_study",
     "size",
-    "sweep",
     "write_report",
 ]
 
@@ -218,39 +214,6 @@ def compare(a: Analysis | AnyStudy, b: Analysis | AnyStudy) -> Comparison:
         return (source if isinstance(source, Analysis) else analyse(source)).to_dict()
 
     return compare_results(result(a), result(b))
-
-
-def sweep(
-    plan: Path | str, store: Path | str | None = None, *, workers: int | None = None
-) -> xr.Dataset:
-    """Return a sweep's points, solved in ``workers`` processes, as `designer sweep` does.
-
-    In a script it stands below ``if __name__ == "__main__":``, since processes read the script.
-
-    Parameters
-    ----------
-    plan : Path or str
-        The YAML file of the sweep.
-    store : Path or str, optional
-        Zarr store to keep; a sweep that is in it goes on. Nothing is kept if left out.
-    workers : int, optional
-        All processors if left out.
-
-    Raises
-    ------
-    InputError
-        If the plan is wrong.
-    """
-    from designer.sweeps import run as running
-    from designer.sweeps.plan import read_sweep
-    from designer.sweeps.run import opened, read_store
-
-    scratch = TemporaryFolder()
-    path = scratch.folder / "sweep.zarr" if store is None else Path(store)
-    laid_out, count = read_sweep(Path(plan), True), workers or running.processor_count()
-    with opened(path, laid_out) as points:
-        running.run(laid_out, points, running.processes(count), count)
-    return read_store(path).load()
 
 
 def _rows(name: str, values: ArrayLike, *widths: int) -> FloatArray:

@@ -62,6 +62,7 @@ class Ring:
 RINGS = (
     Ring("reference", ("reference",), ("verify",)),
     Ring("exchange", ("foreign", "exports"), ("import", "export")),
+    Ring("batch", ("sweeps", "optimum"), ("sweep", "optimise")),
     Ring("drafting", ("drafting",), ("catalog new",)),
     Ring("window", ("explore",), ("explore",)),
 )

@@ -16,7 +16,7 @@ ROOMS = [
     "__init__", "errors", "arrays", "spelling", "checked", "units", "resources", "progress",
     "model", "physics", "kernel", "statics", "sizing", "plugins", "effects", "study", "documents",
     "grades", "measured", "workspace", "proof", "selection", "diagnosis", "analysis", "io",
-    "sweeps", "optimum", "report", "api", "cli",
+    "report", "api", "cli",
     *(room for ring in RINGS for room in ring.rooms), "__main__",
 ]  # fmt: skip
 """From the bottom up; rings are above all that a report needs."""

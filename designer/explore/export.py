@@ -235,9 +235,10 @@ def optimised_study(question: Question, reporter: Reporter, *, plan: Path) -> Op
 
     Raises InputError if the plan is faulty, or is of another study, or the study is not saved.
     """
+    require_ring("optimise")
     from designer.optimum.optimise import optimum_of
     from designer.optimum.plan import read_optimisation
-    from designer.report.optimum import headline, trust_lines, variable_rows
+    from designer.optimum.report import headline, trust_lines, variable_rows
 
     laid_out = read_optimisation(plan, question.plugins.with_others)
     _require_study_of(question, plan, laid_out.document.name)
@@ -260,9 +261,10 @@ def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: P
     Raises InputError if the plan is faulty, or is of another study, or the study is not saved; or
     if something else is at the target; OutputError if a file cannot be written.
     """
-    from designer.report.sweep import write_sweep
+    require_ring("sweep")
     from designer.sweeps import run as running
     from designer.sweeps.plan import read_sweep
+    from designer.sweeps.report import write_sweep
     from designer.sweeps.run import opened, read_store, report_folder
 
     laid_out = read_sweep(plan, question.plugins.with_others)

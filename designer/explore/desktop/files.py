@@ -155,15 +155,11 @@ class Files(QObject):
 
         def write() -> None:
             require_ring("import")
-            from designer.foreign.study import (
-                ImportAnswers,
-                load_importers,
-                read_foreign,
-                study_text,
-            )
+            from designer.foreign import study as foreign
 
-            importers, _ = load_importers(self._plugins)
-            text = study_text(read_foreign(source, importers=importers), ImportAnswers())
+            importers, _ = foreign.load_importers(self._plugins)
+            robot = foreign.read_foreign(source, importers=importers)
+            text = foreign.study_text(robot, foreign.ImportAnswers())
             write_file(Path(name), text)  # what the robot's file does not say is to be filled in
 
         if name and self._succeeds(write, "Not imported"):
