@@ -10,8 +10,8 @@ import numpy as np
 from designer import checked
 from designer.analysis.analyse import Analysis
 from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.documents.columns import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.documents.plain import csv_text
-from designer.measured.assign import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.progress import Advance

@@ -26,8 +26,8 @@ import numpy as np
 from designer.analysis.path_case import PathCase
 from designer.analysis.requirements import design_loads
 from designer.analysis.rope_bending import CableBending, bending_of, life_requirements
+from designer.documents.columns import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.documents.plain import Json, csv_text
-from designer.measured.assign import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.model.load_case import Loaded
 from designer.model.motion import Motion
 from designer.model.robot import Poses

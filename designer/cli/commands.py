@@ -9,7 +9,6 @@ import atexit
 import gc
 import shlex
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -30,11 +29,9 @@ from designer.cli.options import (
     argument,
     can_ask,
     catalogue_of,
-    option,
     output_option,
     study_of,
 )
-from designer.cli.plan import write_plan
 from designer.cli.schema import schema, write_with_schema
 from designer.errors import (
     DesignerError,
@@ -47,7 +44,7 @@ from designer.io.process import interruption, readable_output, settle_in
 from designer.resources import example_names
 
 if TYPE_CHECKING:
-    from designer.diagnosis.result import Diagnosis
+    pass
 
 
 class Commands(HookedCommands):
@@ -216,121 +213,6 @@ def size(
     else:
         print_pose(study, pose)
     return bool(pose.sizing.statics.is_solved)
-
-
-@app.command()
-def diagnose(
-    config: Config,
-    output: Annotated[Path | None, output_option("CONFIG-diagnosis")] = None,
-    checks: Annotated[
-        bool, typer.Option("--check", help="Search nothing: how well do the declared effects fit?")
-    ] = False,
-    data: Annotated[
-        Path | None,
-        option("--data", metavar="CSV", text="Measured data, instead of the study's."),
-    ] = None,
-    plans: Annotated[
-        bool, typer.Option("--plan", help="Before there are data: which poses to measure?")
-    ] = False,
-    poses: Annotated[
-        int | None, typer.Option("--poses", metavar="N", help="With --plan: how many poses.")
-    ] = None,
-    unknown: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--unknown", metavar="NAME", help="With --plan: instead of measurements.unknown."
-        ),
-    ] = None,
-    length_noise: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LENGTH", help="With --plan: deviation of a length, instead of the study's."
-        ),
-    ] = None,
-    tension_noise: Annotated[
-        str | None,
-        typer.Option(metavar="FORCE", help="With --plan: deviation of a tension, as before."),
-    ] = None,
-    template: Template = None,
-    no_plugins: NoPlugins = False,
-) -> bool:
-    """Compare measured data with the model, and find the effect that the model lacks.
-
-    Writes diagnosis.html, diagnosis.pdf, diagnosis.json, residuals.csv and CONFIG.diagnosed.yaml,
-    which has what was fitted and found under `effects:`, and how surely it is known under
-    `uncertainty:`; `designer report` on it uses both. With --check
-    nothing is searched, and check.html, check.pdf and diagnosis.json go into CONFIG-check.
-
-    With --plan there are no data yet: it chooses the poses that tell most of what is unknown, and
-    writes plan.csv for the controller, plan.html, plan.pdf and plan.json, with the deviations to
-    expect, into CONFIG-plan; with -o FILE.csv the table alone. What is unknown, what will be read
-    and its noise stand under `measurements:`, whose file need not be there, or in options.
-
-    \b
-    Examples:
-      designer diagnose built-crane.yaml
-      A month later:  designer diagnose --check built-crane.diagnosed.yaml --data new.csv
-      Before:  designer diagnose --plan crane.yaml --unknown anchors --length-noise "1 mm"
-
-    Exit status 0: the model, with what was found, agrees with the data, or the plan tells all that
-    is unknown. 1: something is left or not plausible, declared effects do not help, or the plan
-    leaves something unknown. 2: the input is wrong.
-    """
-    asked = (poses, unknown, length_noise, tension_noise)
-    if plans:
-        is_alone = not checks and data is None
-        return write_plan(config, output, *asked, is_alone, template, no_plugins=no_plugins)
-    if any(asked):
-        raise InputError.at("designer diagnose", "has options of a plan", "--plan beside them")
-    from designer.cli.tables import print_check, print_diagnosis
-    from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out
-    from designer.io.output import file_names, output_folder, require_file
-    from designer.measured.read import read_measured
-    from designer.measured.table import is_bag
-
-    study, plugins = study_of(config, no_plugins)
-    if data is not None and study.measurements is not None:
-        if not data.is_file() and not is_bag(data):
-            raise InputError.at("--data", f"there is no file {data}", "a CSV file")
-        study = replace(study, measurements=study.measurements.of_file(data))
-    measured = read_measured(study)
-    catalogue = None if checks else catalogue_of(study, plugins)
-    announce_compiling()
-    folder = output or Path(f"{config.stem}-{'check' if checks else 'diagnosis'}")
-
-    from designer.diagnosis.check import Check, check
-    from designer.diagnosis.design import with_design
-    from designer.diagnosis.diagnose import diagnose_study
-    from designer.io.results import diagnosed_config
-    from designer.report.diagnosis.report import write_check, write_diagnosis
-
-    doing = "checking" if checks else "searching"
-    with output_folder(folder) as building, ProgressBars(doing) as bars:
-        require_file(folder / f"{config.stem}.diagnosed.yaml")
-        result: Check | Diagnosis
-        if catalogue is None:
-            result = check(study, measured, bars)
-            bars("report")
-            write_check(result, building, template)
-        else:
-            result = diagnose_study(study, measured, bars)
-            bars("the design with and without")
-            result = with_design(result, catalogue.grades)
-            bars("report")
-            write_diagnosis(result, building, template)
-            residuals = result.residuals_csv()
-            (building / "residuals.csv").write_text(residuals, encoding="utf-8")
-            text = diagnosed_config(result, folder)
-            (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
-        (building / "diagnosis.json").write_text(f"{result.to_json()}\n", encoding="utf-8")
-        written = file_names(building)
-    if isinstance(result, Check):
-        print_check(result, folder, written)
-        return result.is_positive
-    n_known = len(study.known_effects.problems)
-    print_left_out(result.study.known_effects.problems[n_known:])
-    print_diagnosis(result, folder, written)
-    return result.is_positive
 
 
 @app.command()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -94,7 +94,9 @@ class Report:
     control : Control
         Number, revision, names, logo, digests.
     problems : tuple of str
-        Which sections of plugins are left out and why, one line each.
+        Which sections and filters of plugins are left out and why, one line each.
+    filters : mapping of str to callable, optional
+        What its templates may use beside ours.
     """
 
     name: str
@@ -107,6 +109,7 @@ class Report:
     missing: str = ""
     control: Control = NO_CONTROL
     problems: tuple[str, ...] = ()
+    filters: Mapping[str, Callable[..., object]] | None = None
 
     @classmethod
     def of(
@@ -121,6 +124,7 @@ class Report:
         missing: str = "",
         control: Control = NO_CONTROL,
         problems: Iterable[str] = (),
+        filters: Mapping[str, Callable[..., object]] | None = None,
     ) -> Report:
         """Return a report; sections that are None are left out."""
         return cls(
@@ -134,6 +138,7 @@ class Report:
             missing,
             control,
             tuple(problems),
+            filters,
         )
 
     def section(self, section_id: str) -> Section:

@@ -25,6 +25,7 @@ from pydantic import (
 from designer.arrays import FloatArray, frozen_array
 from designer.documents import fields
 from designer.documents.bounds import MOST_CABLES, MOST_SAMPLES
+from designer.documents.columns import COVARIATE, IGNORE, column_hint, dimension_of
 from designer.documents.fields import (
     Section,
     Text,
@@ -53,7 +54,6 @@ from designer.io.config.machine import (
     rotation_vector_rad,
     word_or_list,
 )
-from designer.measured.assign import COVARIATE, IGNORE, column_hint, dimension_of
 from designer.model.cable import MaterialName, Preference, PriceList, Trust
 from designer.model.measurements import LogColumn, LogSession, Measurements, Reading
 from designer.model.motion import Ends

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from designer.analysis.provenance import Provenance
 from designer.diagnosis.plan import Plan
+from designer.diagnosis.plan_figures import curves_chart, poses_chart
 from designer.report import format as fmt
 from designer.report.document import Drawing, Report, Section, control_of, vector
-from designer.report.figures.plan import curves_chart, poses_chart
 from designer.report.render import write_pages
 
 
