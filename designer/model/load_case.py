@@ -31,7 +31,7 @@ from designer.model.region import Region
 from designer.model.robot import Platform, Robot
 from designer.model.space import Orientations
 
-MOST_WRENCHES = 64
+MAX_WRENCHES = 64
 """The corners of a box in all six parts of a wrench."""
 
 
@@ -45,8 +45,8 @@ class WrenchSet(checked.Value):
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
-        if not 1 <= len(self.wrenches_N) <= MOST_WRENCHES:
-            raise ValueError(f"a set has 1 to {MOST_WRENCHES} wrenches, not {len(self.wrenches_N)}")
+        if not 1 <= len(self.wrenches_N) <= MAX_WRENCHES:
+            raise ValueError(f"a set has 1 to {MAX_WRENCHES} wrenches, not {len(self.wrenches_N)}")
 
     @classmethod
     def between(cls, first_N: FloatArray, last_N: FloatArray) -> WrenchSet:
@@ -85,7 +85,7 @@ _SAME_DIRECTION = 1e-12
 FIRST_WINDS = 8
 EACH = "each"
 """Of a lost cable: each in turn."""
-MOST_DIRECTIONS = 512
+MAX_DIRECTIONS = 512
 """Of a load case with a set of wrenches: each is solved in all samples, for all ropes."""
 
 

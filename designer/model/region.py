@@ -579,7 +579,7 @@ class Rectangle(Region):
         return BoxFrame(np.array([*self.ends_m[0], 0.0]), axes, low, high, np.zeros((0, 3)))
 
 
-_MOST_VERTICES = 256
+_MAX_VERTICES = 256
 """Of a long list only the first points are tried as corners: all of it is tried anyway."""
 
 
@@ -627,7 +627,7 @@ class PointList(Region):
         return self.points_m[rng.integers(len(self.points_m), size=count)]
 
     def border(self) -> Border:
-        return Border(self.points_m[:_MOST_VERTICES], np.empty((0, 2, 3)), [])
+        return Border(self.points_m[:_MAX_VERTICES], np.empty((0, 2, 3)), [])
 
     def frame(self) -> BoxFrame:
         """Return each point as a box without size."""

@@ -19,14 +19,14 @@ from pydantic import TypeAdapter, ValidationError
 from scipy.spatial import QhullError
 
 from designer.arrays import FloatArray
-from designer.documents.bounds import BOUNDS, MOST_CABLES
+from designer.documents.bounds import BOUNDS, MAX_CABLES
 from designer.documents.document import Data, Document, Key
 from designer.documents.fields import kind_at, reader_of
 from designer.documents.opened import open_input, reason
 from designer.documents.picture import LARGEST_PICTURE_BYTES, why_not_shown
 from designer.effects.effect import ALL_ATTACHMENTS, OF_CABLE, Effect
 from designer.errors import Fault
-from designer.io.config.effects import Found, read_effects
+from designer.io.config.effects import DeclaredEffects, read_effects
 from designer.io.config.machine import attached_each
 from designer.io.config.schema import ORIENTATION_KINDS, ColumnSection, StudySection
 from designer.measured.assign import COVARIATE, IGNORE, TIME_NAME, cable_of, is_rotation
@@ -87,10 +87,10 @@ class Parts:
     def n_cables(self) -> int:
         """Number of cables; as many as there may be where the anchors are faulty."""
         anchors = self.read("robot.anchors")
-        return MOST_CABLES if anchors is None else len(anchors)
+        return MAX_CABLES if anchors is None else len(anchors)
 
     @property
-    def declared(self) -> Found:
+    def declared(self) -> DeclaredEffects:
         """The effects, each with its place, and what is wrong with them."""
         return read_effects(self.raw("effects"), self.n_cables, self.effects)
 
@@ -175,7 +175,7 @@ def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]
         columns_fit_the_robot,
         unknowns_are_known,
         logo_is_a_picture,
-        unknown_poses_can_be_told,
+        unknown_poses_are_identifiable,
         data_have_a_file,
         sessions_have_their_own,
     )
@@ -384,10 +384,10 @@ def _vectors(parts: Parts, origin: FloatArray, size: float) -> Iterator[tuple[st
     ends = parts.array("workspace.region.rectangle")
     if ends is not None:
         yield "workspace.region.rectangle", np.column_stack([ends, [origin[2]] * 2]) - origin
-    turned = parts.read("workspace.orientation")
-    if turned is not None and turned.toward is not None:
-        yield "workspace.orientation.toward", np.array([turned.toward]) - origin
-        yield "workspace.orientation.axis", np.array([turned.axis]) * size
+    orientation = parts.read("workspace.orientation")
+    if orientation is not None and orientation.toward is not None:
+        yield "workspace.orientation.toward", np.array([orientation.toward]) - origin
+        yield "workspace.orientation.axis", np.array([orientation.axis]) * size
     force = parts.array("robot.platform.wrench.force")
     if force is not None and force.any():
         yield "robot.platform.wrench.force", force[None] * size / np.linalg.norm(force)
@@ -853,16 +853,16 @@ def sessions_have_their_own(parts: Parts) -> Iterator[Fault]:
             if name in of_machine or name == POSES:
                 problem = f"'{name}' {why} of a session"
                 yield parts.fault(_SESSIONS, problem, "another", number, "unknown", index)
-        own = read_effects(session.get("effects"), parts.n_cables, parts.effects, place)
-        for flaw in own.flaws:
+        declared_there = read_effects(session.get("effects"), parts.n_cables, parts.effects, place)
+        for flaw in declared_there.flaws:
             yield parts.document.fault(*flaw)
-        for where, effect in own.effects:
+        for keys, effect in declared_there.effects:
             if effect.id in declared:
                 problem = f"'{effect.id}' is declared of the machine, so of all sessions"
-                yield parts.document.fault(where, problem, "one of the two")
+                yield parts.document.fault(keys, problem, "one of the two")
 
 
-def unknown_poses_can_be_told(parts: Parts) -> Iterator[Fault]:
+def unknown_poses_are_identifiable(parts: Parts) -> Iterator[Fault]:
     """Where poses are unknown, attachments and the vertical are not."""
     unknown = {name: index for index, name in _texts(parts.raw(_UNKNOWN))}
     if POSES not in unknown:

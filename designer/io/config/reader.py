@@ -30,11 +30,11 @@ from designer.io.config.schema import (
 from designer.io.poses import TIME, PoseTable, path_faults, read_poses
 from designer.io.prices import read_prices
 from designer.model.cable import Material, PriceList
-from designer.model.load_case import MOST_DIRECTIONS, LoadCase
+from designer.model.load_case import MAX_DIRECTIONS, LoadCase
 from designer.model.motion import Motion, limited, timed
 from designer.model.region import PointList, Region
 from designer.model.robot import Robot, Surroundings
-from designer.model.space import EachPose, Orientations, Toward, TurnTable
+from designer.model.space import ListedOrientations, Orientations, OrientationTable, Toward
 from designer.model.workspace import Workspace
 from designer.plugins import Plugins, find_plugins
 from designer.study import DeclaredEffect, Entry, GradeFamily, Study, StudySource
@@ -61,7 +61,7 @@ class Places:
     def are_turned_one_by_one(self) -> bool:
         """Whether only listed poses have an orientation."""
         law = None if self.workspace is None else self.workspace.orientations.law
-        return isinstance(law, EachPose)
+        return isinstance(law, ListedOrientations)
 
 
 def places_of(
@@ -117,7 +117,7 @@ class _Places:
             return Orientations(law=self._turn_table(single.table))
         return section.fixed_orientations()
 
-    def _turn_table(self, name: str) -> TurnTable:
+    def _turn_table(self, name: str) -> OrientationTable:
         keys = ("workspace", "orientation", "table")
         places = self._table(keys, name).places
         if places.shape[1] < 6:
@@ -129,7 +129,7 @@ class _Places:
             problem = f"{name} has a position in two rows"
             raise self._error(keys, problem, "one orientation for each position")
         position_m, turn_rad = (frozen_array(part) for part in np.hsplit(places, 2))
-        return TurnTable(position_m, turn_rad, name)
+        return OrientationTable(position_m, turn_rad, name)
 
     def listed(self, section: WorkspaceSection, cases: list[str]) -> Places:
         """Return a list of poses, and what of it is for one load case alone."""
@@ -193,8 +193,8 @@ class _Places:
         """Refuse a path that turns a platform whose inertia is not known in every load case."""
         problem, expected = f"{name} turns the platform", "moments of inertia [xx, yy, zz]"
         if self.robot.platform.inertia_kg_m2 is None:
-            where = ("robot", "platform")
-            raise self._error(where, f"inertia is missing, and {problem}", f"inertia: {expected}")
+            missing = f"inertia is missing, and {problem}"
+            raise self._error(("robot", "platform"), missing, f"inertia: {expected}")
         for index, case in enumerate(section.load_cases):
             if case.mass is not None and case.inertia is None:
                 keys = ("load_cases", index, "mass")
@@ -229,7 +229,9 @@ class _Places:
         if not turns.size:
             return region, self.orientations(section, region)
         is_level = not turns.any()
-        return region, Orientations(law=None if is_level else EachPose.of(positions, turns))
+        return region, Orientations(
+            law=None if is_level else ListedOrientations.of(positions, turns)
+        )
 
 
 _PATH = ("workspace", "path")
@@ -292,15 +294,15 @@ def study_of(
     price_list, tables = _price_list(section, document)
     measurements, uncertainty = section.measurements, section.uncertainty
     lines = {path_text(keys): node.line for keys, node in document.root.walk()}
-    given = _with_family(tuple(entries), material, family)
+    inputs = _with_family(tuple(entries), material, family)
     # A member of the family bears at the drum what its stress allows, and less at the exit point.
-    kept = robot.winches.reeving_efficiency
-    material = replace(material, allowable_stress_Pa=kept * material.allowable_stress_Pa)
+    efficiency = robot.winches.reeving_efficiency
+    material = replace(material, allowable_stress_Pa=efficiency * material.allowable_stress_Pa)
     return Study(
         name=section.name or path.stem,
         robot=robot,
         material=material,
-        source=StudySource(path, document.sha256, given, lines, (*places.tables, *tables)),
+        source=StudySource(path, document.sha256, inputs, lines, (*places.tables, *tables)),
         pose=None if pose is None else pose.poses(),
         workspace=places.workspace,
         selection=None if selection is None else selection.selection(price_list),
@@ -344,8 +346,8 @@ def _session_effects(
     sessions = section.measurements.sessions if section.measurements else None
     place: Keys = ("measurements", "sessions")
     return [
-        read_effects(each.effects, n_cables, known.by_id, (*place, number, "effects")).effects
-        for number, each in enumerate(sessions or ())
+        read_effects(session.effects, n_cables, known.by_id, (*place, number, "effects")).effects
+        for number, session in enumerate(sessions or ())
     ]
 
 
@@ -356,12 +358,12 @@ def _material_and_family(
     cable = section.cable
     if isinstance(cable, CableSection):
         return Material(cable.density, cable.youngs_modulus, cable.allowable_stress), None
-    from designer.grades.registry import kept_catalogue  # most studies name no grade
+    from designer.grades.registry import cached_catalogue  # most studies name no grade
 
     usual = (section.selection or SelectionSection()).safety_factor
     family = GradeFamily(cable.grade, cable.safety_factor or usual)
     files = [Path(document.name).parent / name for name in section.catalogues]
-    catalogue = kept_catalogue(
+    catalogue = cached_catalogue(
         [file for file in files if file.exists()], plugins or find_plugins(with_plugins=False)
     )
     grade = next((grade for grade in catalogue.grades if grade.id == cable.grade), None)
@@ -401,11 +403,11 @@ def _load_case(
     case_places = _case_places(document, index, robot, section, places)
     case = section.load_case(study.cable, *case_places)
     count = case.direction_count(robot)
-    if case.wrench_set is None or count <= MOST_DIRECTIONS:
+    if case.wrench_set is None or count <= MAX_DIRECTIONS:
         return case
     of_set = len(case.wrench_set.wrenches_N)
     problem = f"{of_set} wrenches in {count // of_set} directions of wind, inertia and loss"
-    expected = f"{MOST_DIRECTIONS} loads at most, not {count}"
+    expected = f"{MAX_DIRECTIONS} loads at most, not {count}"
     raise InputError([document.fault(("load_cases", index, "wrench_set"), problem, expected)])
 
 
@@ -445,7 +447,7 @@ def checked(document: Document, known: KnownEffects) -> StudySection:
 
 
 DEFAULT = "default"
-_MOST_ROWS = 64
+_MAX_ROWS = 64
 
 
 def all_entries(section: BaseModel, node: Node | None, place: tuple[Key, ...] = ()) -> list[Entry]:
@@ -507,7 +509,7 @@ def _entries(
                 yield Entry(path_text((*place, name)), as_given(node.child(name)), item.meaning)
     elif not (isinstance(value, tuple) and value and isinstance(value[0], tuple)):
         yield Entry(path_text(place), node.as_written(), _in_SI(value, dimension))
-    elif len(value) > _MOST_ROWS:
+    elif len(value) > _MAX_ROWS:
         ends = f"{_in_SI(value[0], dimension)} … {_in_SI(value[-1], dimension)}"
         yield Entry(path_text(place), f"{len(value)} rows", ends)
     else:

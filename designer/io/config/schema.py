@@ -22,7 +22,7 @@ from pydantic import (
 
 from designer.arrays import FloatArray, frozen_array
 from designer.documents import fields
-from designer.documents.bounds import MOST_CABLES, MOST_SAMPLES
+from designer.documents.bounds import MAX_CABLES, MOST_SAMPLES
 from designer.documents.fields import (
     Section,
     Text,
@@ -206,18 +206,18 @@ class SpreadSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _is_one_distribution(cls, given: object) -> object:
+    def _is_one_distribution(cls, raw: object) -> object:
         expected = f"{{standard_deviation: {cls.example}}} for a normal distribution, or "
         expected += f"{{uniform: {cls.example}}}"
-        if not isinstance(given, dict):
-            raise refusal(f"{describe(given)} is not a distribution", expected)
-        unknown = [name for name in given if name not in cls.model_fields]
+        if not isinstance(raw, dict):
+            raise refusal(f"{describe(raw)} is not a distribution", expected)
+        unknown = [name for name in raw if name not in cls.model_fields]
         if unknown:
             raise refusal(f"the distribution {describe(unknown[0])} is not known", expected)
-        count = sum(value is not None for value in given.values())
+        count = sum(value is not None for value in raw.values())
         if count != 1:
             raise refusal(f"names {'two distributions' if count else 'no distribution'}", expected)
-        return given
+        return raw
 
     def value(self) -> Spread:
         """Return the distribution."""
@@ -291,11 +291,11 @@ Files = Annotated[
     | Annotated[
         Annotated[tuple[fields.Text, ...], fields.list_of(1, 100, "a list of files")], Tag("files")
     ],
-    Discriminator(lambda given: "files" if isinstance(given, list | tuple) else "a file"),
+    Discriminator(lambda raw: "files" if isinstance(raw, list | tuple) else "a file"),
 ]
 CableNumbers = Annotated[
-    tuple[Annotated[int, fields.WholeNumber(1, MOST_CABLES)], ...],
-    fields.list_of(1, MOST_CABLES, "a list of one or more cable numbers, such as [1, 2]"),
+    tuple[Annotated[int, fields.WholeNumber(1, MAX_CABLES)], ...],
+    fields.list_of(1, MAX_CABLES, "a list of one or more cable numbers, such as [1, 2]"),
 ]
 Groups = Annotated[
     dict[fields.Text, CableNumbers],
@@ -338,12 +338,12 @@ class PoseSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_list(cls, given: object) -> object:
-        if fields.in_brackets(given):
+    def _from_list(cls, raw: object) -> object:
+        if fields.in_brackets(raw):
             raise fields.refusal(
-                f"{describe(given)} is not a list", "[x, y, z]" + fields.in_brackets(given)
+                f"{describe(raw)} is not a list", "[x, y, z]" + fields.in_brackets(raw)
             )
-        return {"position": given} if isinstance(given, list) else only_one_of(given)
+        return {"position": raw} if isinstance(raw, list) else only_one_of(raw)
 
     @property
     def turn_rad(self) -> FloatArray:
@@ -371,8 +371,8 @@ class PathSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_name(cls, given: object) -> object:
-        return {"file": given} if isinstance(given, str) else given
+    def _from_name(cls, raw: object) -> object:
+        return {"file": raw} if isinstance(raw, str) else raw
 
 
 class WorkspaceSection(Section):
@@ -443,10 +443,10 @@ class WorkspaceSection(Section):
         """Return the orientations, where no law has them."""
         if self.orientation_range is not None:
             return Orientations.within(*self.orientation_range.bounds_rad)
-        turned = self.orientations or ((self.orientation,) if self.orientation else ())
-        if not turned:
+        sections = self.orientations or ((self.orientation,) if self.orientation else ())
+        if not sections:
             return Orientations()
-        return Orientations(frozen_array([orientation.turn_rad for orientation in turned]))
+        return Orientations(frozen_array([orientation.turn_rad for orientation in sections]))
 
 
 class LimitsSection(Section):
@@ -535,7 +535,7 @@ class SelectionSection(Section):
     groups: Groups | None = None
     """Cables that may get a rope of their own: names, each with its cable numbers, counted from
     1 in the order of the anchors."""
-    max_distinct_products: Annotated[int, fields.WholeNumber(1, MOST_CABLES)] | None = config_field(
+    max_distinct_products: Annotated[int, fields.WholeNumber(1, MAX_CABLES)] | None = config_field(
         "Different ropes"
     )
     """How many different ropes the groups of cables may have between them."""
@@ -546,12 +546,12 @@ class SelectionSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _factor_of_duty_class(cls, given: object) -> object:
-        factor = RUNNING_ROPE.get(str(given.get("duty_class"))) if isinstance(given, dict) else None
-        if factor is None or not isinstance(given, dict):
-            return given
-        only_one_of(given, ("safety_factor", "duty_class"), "the selection")
-        return {**given, "safety_factor": factor}
+    def _factor_of_duty_class(cls, raw: object) -> object:
+        factor = RUNNING_ROPE.get(str(raw.get("duty_class"))) if isinstance(raw, dict) else None
+        if factor is None or not isinstance(raw, dict):
+            return raw
+        only_one_of(raw, ("safety_factor", "duty_class"), "the selection")
+        return {**raw, "safety_factor": factor}
 
     def selection(self, price_list: PriceList | None) -> Selection:
         """Return how a product is chosen, with the prices of its list."""
@@ -673,9 +673,9 @@ class MeasurementsSection(Section):
 
     def measurements(self, folder: Path) -> Measurements:
         """Return what was measured, with its files from this folder."""
-        sessions = tuple(each.session(folder) for each in self.sessions or ())
-        given = (self.file,) if isinstance(self.file, str) else self.file
-        files = [folder / name for name in given or ()]
+        sessions = tuple(session.session(folder) for session in self.sessions or ())
+        raw = (self.file,) if isinstance(self.file, str) else self.file
+        files = [folder / name for name in raw or ()]
         if sessions:
             files = [sessions[0].file, *sessions[0].more_files]
         return Measurements(
