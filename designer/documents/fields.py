@@ -230,6 +230,16 @@ def only_word(word: str, expected: str) -> BeforeValidator:
     return BeforeValidator(check)
 
 
+def by_list(label: str, otherwise: str) -> Discriminator:
+    """Return what labels an alternative by whether a list is given."""
+    return Discriminator(lambda raw: label if isinstance(raw, list | tuple) else otherwise)
+
+
+def by_word(otherwise: str) -> Discriminator:
+    """Return what labels an alternative as a word, if a text is given, or otherwise."""
+    return Discriminator(lambda raw: "a word" if isinstance(raw, str) else otherwise)
+
+
 def in_brackets(value: object) -> str:
     """Return how a text with commas is written as the list that it was meant for; else nothing."""
     if not isinstance(value, str) or "," not in value or len(value) > LONGEST_TEXT:
@@ -396,7 +406,7 @@ Band = Annotated[
 ]
 BandOrLeast = Annotated[
     Annotated[Band, Tag("a band")] | Annotated[Frequency, Tag("a frequency")],
-    Discriminator(lambda raw: "a band" if isinstance(raw, list | tuple) else "a frequency"),
+    by_list("a band", "a frequency"),
 ]
 Inertias = Annotated[tuple[Inertia, ...], list_of(3, 6, _INERTIAS), AfterValidator(_of_a_body)]
 Corner = Annotated[tuple[Length, Length], list_of(2, 2, "two lengths [x, y]")]

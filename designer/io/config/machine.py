@@ -35,6 +35,8 @@ from designer.documents.fields import (
     Turn,
     WholeNumber,
     bounded,
+    by_list,
+    by_word,
     config_field,
     list_of,
     only_word,
@@ -204,20 +206,15 @@ Box = Annotated[
 ]
 
 
-def word_or_list(value: object) -> str:
-    """Return the tag of a value that may be a word or a list."""
-    return "a word" if isinstance(value, str) else "a list"
-
-
 PrismBase = Annotated[
     Annotated[Literal["anchors"], only_word("anchors", _CORNERS), Tag("a word")]
     | Annotated[Corners, Tag("a list")],
-    Discriminator(word_or_list),
+    by_word("a list"),
 ]
 RectangleBase = Annotated[
     Annotated[Literal["anchors"], only_word("anchors", _ENDS), Tag("a word")]
     | Annotated[Ends, Tag("a list")],
-    Discriminator(word_or_list),
+    by_word("a list"),
 ]
 
 
@@ -449,9 +446,7 @@ ConfiguredTensionMax = Annotated[
         list_of(2, MAX_CABLES, "one for each cable, null for no limit"),
         Tag("of each winch"),
     ],
-    Discriminator(
-        lambda raw: "of each winch" if isinstance(raw, list | tuple) else "of all winches"
-    ),
+    by_list("of each winch", "of all winches"),
 ]
 
 
@@ -561,9 +556,7 @@ ConfiguredAttached = Annotated[
         list_of(2, MAX_CABLES, "one for each cable, null for nothing"),
         Tag("along each cable"),
     ],
-    Discriminator(
-        lambda raw: "along each cable" if isinstance(raw, list | tuple) else "along all cables"
-    ),
+    by_list("along each cable", "along all cables"),
 ]
 
 
@@ -655,13 +648,13 @@ ConfiguredCable = Annotated[
 LostCable = Annotated[
     Annotated[Literal["each"], only_word("each", "'each' or the number of a cable"), Tag("a word")]
     | Annotated[int, WholeNumber(1, MAX_CABLES), Tag("a number")],
-    Discriminator(lambda raw: "a word" if isinstance(raw, str) else "a number"),
+    by_word("a number"),
 ]
 
 Directions = Annotated[
     Annotated[Literal["all"], only_word("all", "'all' or a number of directions"), Tag("a word")]
     | Annotated[int, WholeNumber(1, 72), Tag("a number")],
-    Discriminator(lambda raw: "a word" if isinstance(raw, str) else "a number"),
+    by_word("a number"),
 ]
 
 
@@ -736,7 +729,7 @@ ConfiguredWrenchSet = Annotated[
         list_of(1, MAX_WRENCHES, f"1 to {MAX_WRENCHES} wrenches {{force: …, moment: …}}"),
         Tag("a list"),
     ],
-    Discriminator(lambda raw: "a list" if isinstance(raw, list | tuple) else "a box"),
+    by_list("a list", "a box"),
 ]
 
 

@@ -13,7 +13,6 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import (
     AfterValidator,
     BeforeValidator,
-    Discriminator,
     Field,
     StrictBool,
     Tag,
@@ -49,7 +48,6 @@ from designer.io.config.machine import (
     RobotSection,
     only_one_of,
     rotation_vector_rad,
-    word_or_list,
 )
 from designer.measured.assign import COVARIATE, IGNORE, column_hint, dimension_of
 from designer.model.cable import MaterialName, PriceList, Trust
@@ -167,10 +165,6 @@ def _rising(ends: tuple[float, float]) -> tuple[float, float]:
     return ends
 
 
-def _tag(value: object) -> str:
-    return "ends" if isinstance(value, list | tuple) else "a half width"
-
-
 RelativeEnds = Annotated[
     tuple[Annotated[float, bounded("deviation")], Annotated[float, bounded("deviation")]],
     list_of(2, 2, _ENDS),
@@ -184,12 +178,12 @@ PointEnds = Annotated[
 Width = Annotated[
     Annotated[float, bounded("half width"), Tag("a half width")]
     | Annotated[RelativeEnds, Tag("ends")],
-    Discriminator(_tag),
+    fields.by_list("ends", "a half width"),
 ]
 WidthOfPoint = Annotated[
     Annotated[float, bounded("scatter of points"), Tag("a half width")]
     | Annotated[PointEnds, Tag("ends")],
-    Discriminator(_tag),
+    fields.by_list("ends", "a half width"),
 ]
 
 
@@ -291,7 +285,7 @@ Files = Annotated[
     | Annotated[
         Annotated[tuple[fields.Text, ...], fields.list_of(1, 100, "a list of files")], Tag("files")
     ],
-    Discriminator(lambda raw: "files" if isinstance(raw, list | tuple) else "a file"),
+    fields.by_list("files", "a file"),
 ]
 CableNumbers = Annotated[
     tuple[Annotated[int, fields.WholeNumber(1, MAX_CABLES)], ...],
@@ -313,7 +307,7 @@ TurnList = Annotated[
 GradeIds = Annotated[
     Annotated[Literal["all"], fields.only_word("all", _GRADES), Tag("a word")]
     | Annotated[tuple[fields.Text, ...], fields.list_of(1, 1000, _GRADES), Tag("a list")],
-    Discriminator(word_or_list),
+    fields.by_word("a list"),
 ]
 _SomeMaterials = Annotated[
     tuple[MaterialName, ...],
@@ -323,7 +317,7 @@ _SomeMaterials = Annotated[
 Materials = Annotated[
     Annotated[Literal["all"], fields.only_word("all", _MATERIALS), Tag("a word")]
     | Annotated[_SomeMaterials, Tag("a list")],
-    Discriminator(word_or_list),
+    fields.by_word("a list"),
 ]
 
 
