@@ -24,6 +24,11 @@ from designer.model.sobol import halton
 
 _STRAIGHT = 1e-9
 """Sine of the angle to a point straight behind, from which on that counts as straight."""
+_APART = 1e-7
+_AT_AN_END = 1.0 / 3.0
+"""Chance that a sample of a range has a component at its lowest value; the same for the highest."""
+FILLING = 16
+"""Orientations inside a range that are tried beside its middle and its corners."""
 
 
 class OrientationLaw(checked.Value, ABC):
@@ -173,13 +178,6 @@ def _distance_m(points_m: FloatArray, rows_m: FloatArray) -> FloatArray:
     from scipy.spatial.distance import cdist
 
     return np.asarray(cdist(points_m, rows_m))
-
-
-_APART = 1e-7
-_AT_AN_END = 1.0 / 3.0
-"""Chance that a sample of a range has a component at its lowest value; the same for the highest."""
-FILLING = 16
-"""Orientations inside a range that are tried beside its middle and its corners."""
 
 
 @checked.reports_field
