@@ -63,7 +63,7 @@ class WrenchSet(checked.Value):
         """Return the same, so many times as large."""
         return replace(self, wrenches_N=factor * self.wrenches_N)
 
-    def beside(self, wrench_N: FloatArray, step: float) -> Iterator[FloatArray]:
+    def neighbours(self, wrench_N: FloatArray, step: float) -> Iterator[FloatArray]:
         """Yield the wrenches of a box by a step, of half its width, from one (6,) of them."""
         if not self.is_box:
             return
@@ -164,11 +164,11 @@ class Loaded:
     wrench_N: FloatArray | None = None
 
     @property
-    def is_turned(self) -> bool:
+    def is_direction_searched(self) -> bool:
         """Whether its wind, inertia force or wrench is the worst of many, to be searched."""
-        return next(self.turned(1.0), None) is not None
+        return next(self.perturbed(1.0), None) is not None
 
-    def turned(self, step: float) -> Iterator[Loaded]:
+    def perturbed(self, step: float) -> Iterator[Loaded]:
         """Yield the same with wind, inertia force or wrench changed a little: by a step aside."""
         robot, lost, wrench_N = self.bare[0], self.lost_cable, self.wrench_N
         if self.wind is not None and self.case.searches_wind(robot):
@@ -178,7 +178,7 @@ class Loaded:
             for along in _aside(self.inertia, free_axes(robot), step):
                 yield self.case.under(*self.bare, self.wind, along, lost, wrench_N)
         if wrench_N is not None and self.case.wrench_set is not None:
-            for other_N in self.case.wrench_set.beside(wrench_N, step):
+            for other_N in self.case.wrench_set.neighbours(wrench_N, step):
                 yield self.case.under(*self.bare, self.wind, self.inertia, lost, other_N)
 
     @property

@@ -405,7 +405,7 @@ def _turned(result: CaseResult, passed: list[CaseResult]) -> CaseResult:
 
 
 def _is_turned(result: CaseResult) -> bool:
-    return result.loaded.is_turned and result.verification.is_refined
+    return result.loaded.is_direction_searched and result.verification.is_refined
 
 
 def _turned_once(result: CaseResult, passed: list[CaseResult]) -> CaseResult:
@@ -500,7 +500,7 @@ def steepest(
     """
     step = 0.5
     while step > 1e-6:
-        trials = [(severity_of(turned), turned) for turned in loaded.turned(step)]
+        trials = [(severity_of(turned), turned) for turned in loaded.perturbed(step)]
         summit = _summit(loaded, severity, trials)
         if summit is not None:
             trials.append((severity_of(summit), summit))
