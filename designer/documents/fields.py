@@ -558,23 +558,21 @@ def known_fields(schema: AnySection, loc: Sequence[Key]) -> Mapping[str, FieldIn
 
 
 def kind_at(schema: AnySection, loc: Sequence[Key]) -> Any:
-    """Return what the schema holds at a path, which may have pydantic's labels of alternatives."""
+    """Return what the schema holds at a path, which may have pydantic's labels of alternatives.
+
+    A place in a list keeps its kind.
+    """
     kind: Any = schema
     for key in loc:
-        kind = _step(kind, key)
+        plain = get_args(kind)[0] if get_origin(kind) is Annotated else kind
+        if get_origin(plain) is dict:
+            kind = get_args(plain)[1]
+        elif (branch := _branch(kind, key)) is not None:
+            kind = branch
+        else:
+            infos = (fields_of(section).get(str(key)) for section in _sections_in(kind))
+            kind = next((info.rebuild_annotation() for info in infos if info is not None), kind)
     return kind
-
-
-def _step(kind: Any, key: Key) -> Any:
-    """Return what the schema holds one step further; a place in a list keeps its kind."""
-    plain = get_args(kind)[0] if get_origin(kind) is Annotated else kind
-    if get_origin(plain) is dict:
-        return get_args(plain)[1]
-    branch = _branch(kind, key)
-    if branch is not None:
-        return branch
-    infos = (fields_of(section).get(str(key)) for section in _sections_in(kind))
-    return next((info.rebuild_annotation() for info in infos if info is not None), kind)
 
 
 def _branch(kind: Any, label: Key) -> Any:

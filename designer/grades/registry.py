@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import partial
 from hashlib import sha256
@@ -77,18 +77,13 @@ def _with_units(value: Any) -> Any:
         units = asdict(reader_of(Units).validate_python(value.get("units")))
     except ValidationError:  # is reported once, not in every row
         return value
-    return {**value, "sizes": [_with_unit(row, units) for row in value["sizes"]]}
-
-
-def _with_unit(row: Any, units: Mapping[str, str | None]) -> Any:
-    if not isinstance(row, dict):
-        return row
-    row = dict(row)
-    for name, value in row.items():
-        number = split_quantity(value)
-        if number is not None and units.get(name) and not number[1]:
-            row[name] = f"{value} {units[name]}"
-    return row
+    rows = [dict(row) if isinstance(row, dict) else row for row in value["sizes"]]
+    for row in (row for row in rows if isinstance(row, dict)):
+        for name, cell in row.items():
+            number = split_quantity(cell)
+            if number is not None and units.get(name) and not number[1]:
+                row[name] = f"{cell} {units[name]}"
+    return {**value, "sizes": rows}
 
 
 def read_grades(path: Path, needs_any: bool = False) -> tuple[list[GradeFile], list[Fault]]:

@@ -325,7 +325,7 @@ class LoadCase:
     def _directions(self, robot: Robot) -> tuple[Sequence[Any], ...]:
         """Return the directions of wind and inertia, the lost cables and the wrenches (6,)."""
         winds = [None] if self.wind is None else list(self.wind.directions(robot))
-        pushes = [None] if self.acceleration_m_per_s2 == 0.0 else list(_spread(robot))
+        pushes = [None] if self.acceleration_m_per_s2 == 0.0 else list(_inertia_directions(robot))
         lost: list[int | None] = [None]
         if self.cable_lost is not None:
             any_cable = self.cable_lost == EACH
@@ -410,8 +410,8 @@ def free_axes(robot: Robot) -> FloatArray:
     return robot.level[[0, 2]] if robot.is_planar else np.eye(3)
 
 
-def _spread(robot: Robot) -> FloatArray:
-    """Return directions of a force that moves the platform (n, 3)."""
+def _inertia_directions(robot: Robot) -> FloatArray:
+    """Return unit vectors of a force that moves the platform (n, 3)."""
     axes = free_axes(robot)
     steps = np.array(list(product((-1.0, 0.0, 1.0), repeat=len(axes))))
     size = np.abs(steps).sum(axis=1)
