@@ -34,7 +34,7 @@ from designer.analysis.requirements import Terms, design_loads, requirements_of,
 from designer.analysis.sensitivities import Sensitivities, group_sensitivities
 from designer.analysis.uncertainty import UncertaintyAnalysis, uncertainty_of
 from designer.analysis.verification import SecondAnswer, second_answers
-from designer.documents.plain import lies_in
+from designer.documents.plain import is_requested
 from designer.effects.design import AsBuilt
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.model.robot import Poses
@@ -148,7 +148,7 @@ class Analysis(checked.Shown):
 
     def is_read(self, part: str) -> bool:
         """Tell whether a part of ``result.json`` is read, such as ``workspace.servable``."""
-        return lies_in(part, self.keep)
+        return is_requested(part, self.keep)
 
     @cached_property
     def pose(self) -> PoseAnalysis | None:

@@ -13,7 +13,7 @@ from designer.analysis.fabrication import spooled_of
 from designer.analysis.modes import PlatformModes
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.selection_json import selection_dict
-from designer.documents.plain import RESULT_FORMAT, Json, lies_in, plain, record
+from designer.documents.plain import RESULT_FORMAT, Json, is_requested, plain, record
 from designer.model.space import named_place
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
@@ -100,7 +100,7 @@ def size_dict(study: Study, pose: PoseAnalysis, keep: Sequence[str] | None = Non
 
     Of ``keep``, the paths that will be read; all if left out.
     """
-    with_rest = lies_in("pose.rest", keep)
+    with_rest = is_requested("pose.rest", keep)
     pose_alone = {"pose": _pose(study, pose, with_rest), "provenance": _origin(study)}
     return plain({"format": RESULT_FORMAT, "name": study.name, **pose_alone})
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from designer.arrays import FloatArray
 from designer.documents.plain import Json, csv_text, plain, record
 from designer.model.cable import PriceList
-from designer.model.space import turn_of
+from designer.model.space import rotation_vector_of
 from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate
 from designer.selection.groups.result import GroupChoice
@@ -110,7 +110,7 @@ def candidate_dict(candidate: Candidate, outcome: GradeOutcome) -> Json:
 
 
 def _place(place: FloatArray) -> Json:
-    return {"worst_pose": place[:3], "worst_rotation_vector": turn_of(place)}
+    return {"worst_pose": place[:3], "worst_rotation_vector": rotation_vector_of(place)}
 
 
 def _groups(chosen: Assignment) -> Iterator[Json]:

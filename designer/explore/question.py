@@ -17,7 +17,7 @@ from designer.arrays import FloatArray, frozen_array
 from designer.effects.design import AsBuilt
 from designer.errors import DesignerError, described
 from designer.grades.grade import Grade
-from designer.grades.registry import Catalogue, kept_catalogue
+from designer.grades.registry import Catalogue, cached_catalogue
 from designer.model.cable import Cable, Cables, Material
 from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Poses, Robot
@@ -205,7 +205,7 @@ def catalogue_of(study: Study, plugins: Plugins) -> Catalogue:
 
     Raises InputError if a file that the study names is faulty, or there is no grade that it names.
     """
-    catalogue = kept_catalogue(study.catalogues, plugins)
+    catalogue = cached_catalogue(study.catalogues, plugins)
     catalogue.require_grades_of(study)
     return catalogue
 

@@ -167,7 +167,7 @@ def _turned(
     again: Effort,
 ) -> tuple[Loaded, FloatArray]:
     """Turn wind and inertia force to where they are worst, and search the pose again, by turns."""
-    if not loaded.is_turned:
+    if not loaded.is_direction_searched:
         return loaded, extreme.place
     for _ in range(_MOST_ROUNDS):
         place = extreme.place

@@ -20,7 +20,7 @@ from designer.arrays import FloatArray, frozen_array
 from designer.model.cable import Material
 from designer.model.region import Region
 from designer.model.robot import Poses, Robot
-from designer.model.space import Following, TurnTable
+from designer.model.space import OrientationLaw, OrientationTable
 from designer.model.workspace import HangsBelow
 from designer.sizing.newton import size_poses
 from designer.workspace.demand import demand_of
@@ -39,7 +39,7 @@ _CHECKED = 64
 
 
 @dataclass(frozen=True, eq=False)
-class BestTurns(Following):
+class BestTurns(OrientationLaw):
     """The orientation in a range that needs the thinnest cable of a family, at each position."""
 
     robot: Robot  #: without load cases, as drawn
@@ -51,14 +51,14 @@ class BestTurns(Following):
     hangs_below: HangsBelow = "include"
 
     @cached_property
-    def table(self) -> TurnTable:
+    def table(self) -> OrientationTable:
         """The law: the best orientations where they were sought; level where none holds."""
         positions = self._positions_m(_NODES, 0)
         rotations, diameter_m = self.best(positions)
         is_held = np.isfinite(diameter_m)
         if not is_held.any():
-            return TurnTable(positions[:1], np.clip(np.zeros((1, 3)), *self.range_rad))
-        return TurnTable(frozen_array(positions[is_held]), frozen_array(rotations[is_held]))
+            return OrientationTable(positions[:1], np.clip(np.zeros((1, 3)), *self.range_rad))
+        return OrientationTable(frozen_array(positions[is_held]), frozen_array(rotations[is_held]))
 
     @cached_property
     def excess(self) -> float:

@@ -25,7 +25,7 @@ from designer.documents.plain import record
 from designer.errors import OutputError
 from designer.model.cable import Cable, Cables, Material
 from designer.model.robot import Poses, Robot
-from designer.model.space import named_pose, named_turn, turn_of
+from designer.model.space import named_orientation, named_pose, rotation_vector_of
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.progress import Advance
@@ -255,7 +255,10 @@ def _add(
 def _named_example(place: FloatArray | None) -> dict[str, FloatArray | None]:
     if place is None:
         return {"infeasible_example_m": None}
-    return {"infeasible_example_m": place[:3], **named_turn(place, "infeasible_rotation_vector")}
+    return {
+        "infeasible_example_m": place[:3],
+        **named_orientation(place, "infeasible_rotation_vector"),
+    }
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -275,7 +278,7 @@ class Extreme:
     @property
     def rotation_vector_rad(self) -> FloatArray:
         """How the platform is turned there (3,) [rad]."""
-        return turn_of(self.place)
+        return rotation_vector_of(self.place)
 
     @property
     def pose(self) -> Poses:

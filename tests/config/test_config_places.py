@@ -14,7 +14,7 @@ from designer.errors import InputError
 from designer.io.config import read_study
 from designer.io.poses import poses_in, read_poses
 from designer.model.robot import Poses
-from designer.model.space import EachPose, Toward, TurnTable
+from designer.model.space import ListedOrientations, OrientationTable, Toward
 from designer.sizing.newton import size_poses
 from designer.study import Study
 from designer.workspace.best_turns import BestTurns
@@ -64,7 +64,7 @@ def test_an_axis_points_at_its_point() -> None:
 def test_a_table_has_its_rows_and_is_linear_on_a_line() -> None:
     rng = np.random.default_rng(1)
     positions, turns = rng.normal(size=(30, 3)), rng.normal(size=(30, 3))
-    table = TurnTable(positions, turns)
+    table = OrientationTable(positions, turns)
     assert table.turns_rad(positions)[:, 0] == pytest.approx(turns)
     anywhere = table.turns_rad(rng.normal(size=(500, 3)) * 5.0)
     assert (anywhere <= turns.max(axis=0)).all()
@@ -74,14 +74,14 @@ def test_a_table_has_its_rows_and_is_linear_on_a_line() -> None:
         np.outer(values, axis) for values, axis in ((knots, [1, 0, 0]), (height, [0, 0, 1]))
     )
     between = np.linspace(0.0, 4.0, 9)
-    found = TurnTable(on_x, about_z).turns_rad(np.outer(between, [1, 0, 0]))[:, 0, 2]
+    found = OrientationTable(on_x, about_z).turns_rad(np.outer(between, [1, 0, 0]))[:, 0, 2]
     assert found == pytest.approx(np.interp(between, knots, height))
 
 
 def test_each_pose_of_a_list_keeps_its_orientations() -> None:
     positions = np.array([[0, 0, 1], [2, 0, 1], [0, 0, 1]], dtype=float)
     turns = np.array([[0.1, 0, 0], [0.2, 0, 0], [0.3, 0, 0]])
-    law = EachPose.of(positions, turns)
+    law = ListedOrientations.of(positions, turns)
     at = law.turns_rad(positions[:2])[:, :, 0]
     assert sorted(at[0]) == [0.1, 0.3]
     assert list(at[1]) == [0.2, 0.2]
