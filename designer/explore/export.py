@@ -24,6 +24,7 @@ from designer.explore.answers import (
 from designer.explore.question import Question
 from designer.explore.session import text_of
 from designer.io.output import file_names, output_folder, write_file
+from designer.plugins import require_ring
 from designer.progress import Reporter
 
 What = Literal[
@@ -129,6 +130,7 @@ def _lengths(question: Question, reporter: Reporter, target: Path, poses: Path |
 
 def _for_program(question: Question, reporter: Reporter, name: str, target: Path) -> Written:
     """Write the study for another program, as `designer export` does."""
+    require_ring("export")
     from designer.exports.formats import FORMATS, export_study
 
     made = export_study(FORMATS[name], target, question.study, question.catalogue, reporter)
@@ -233,9 +235,10 @@ def optimised_study(question: Question, reporter: Reporter, *, plan: Path) -> Op
 
     Raises InputError if the plan is faulty, or is of another study, or the study is not saved.
     """
+    require_ring("optimise")
     from designer.optimum.optimise import optimum_of
     from designer.optimum.plan import read_optimisation
-    from designer.report.optimum import headline, trust_lines, variable_rows
+    from designer.optimum.report import headline, trust_lines, variable_rows
 
     laid_out = read_optimisation(plan, question.plugins.with_others)
     _require_study_of(question, plan, laid_out.document.name)
@@ -258,9 +261,10 @@ def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: P
     Raises InputError if the plan is faulty, or is of another study, or the study is not saved; or
     if something else is at the target; OutputError if a file cannot be written.
     """
-    from designer.report.sweep import write_sweep
+    require_ring("sweep")
     from designer.sweeps import run as running
     from designer.sweeps.plan import read_sweep
+    from designer.sweeps.report import write_sweep
     from designer.sweeps.run import opened, read_store, report_folder
 
     laid_out = read_sweep(plan, question.plugins.with_others)

@@ -145,8 +145,8 @@ class Files(QObject):
         name, _ = QFileDialog.getOpenFileName(self._parent, "Import a robot", "", _ROBOTS)
         if not name:
             return
-        from designer.foreign.study import ImportAnswers, load_importers, read_foreign, study_text
         from designer.io.output import write_file
+        from designer.plugins import require_ring
 
         source = Path(name)
         stem = source.stem.removesuffix("_bodies").removesuffix("_cables")
@@ -154,8 +154,12 @@ class Files(QObject):
         name, _ = QFileDialog.getSaveFileName(self._parent, "Save the study as", start, _STUDIES)
 
         def write() -> None:
-            importers, _ = load_importers(self._plugins)
-            text = study_text(read_foreign(source, importers=importers), ImportAnswers())
+            require_ring("import")
+            from designer.foreign import study as foreign
+
+            importers, _ = foreign.load_importers(self._plugins)
+            robot = foreign.read_foreign(source, importers=importers)
+            text = foreign.study_text(robot, foreign.ImportAnswers())
             write_file(Path(name), text)  # what the robot's file does not say is to be filled in
 
         if name and self._succeeds(write, "Not imported"):
