@@ -24,17 +24,15 @@ from designer.selection.criteria import criteria_of, rope_diameter_m
 from designer.selection.family_need import CaseNeed
 from designer.selection.groups.result import GroupChoice
 from designer.selection.qualities import DesignCable
+from designer.selection.reeving import drum_of, sheave_ratio_of, spooling_of
 from designer.selection.requirements import (
     CaseLoads,
     at_place,
-    drum_of,
     equilibrium_of,
     evaluate,
     extreme_lengths_m,
-    sheave_ratio_of,
 )
 from designer.selection.result import SelectionResult
-from designer.selection.spooling import spooling_of
 from designer.sizing.newton import size_poses
 from designer.statics.free_motion import FreeMotion
 from designer.study import Selection, Study

@@ -17,8 +17,8 @@ from designer.model.cable import Cable
 from designer.model.load_case import STATIC
 from designer.model.requirement import Requirement
 from designer.selection.cases import CaseResult, governing
-from designer.selection.efficiency import Allowance
 from designer.selection.objectives import UNKNOWN, CandidateFigures
+from designer.selection.reeving import Allowance
 from designer.selection.verify import NOT_TRIED, Sampled, Verification
 from designer.study import Objective, Selection
 

@@ -16,7 +16,7 @@ from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.selection.cases import FEW_OF_QUICK
-from designer.selection.efficiency import Allowance
+from designer.selection.reeving import Allowance
 from designer.sizing.newton import size_poses
 from designer.workspace.demand import diameter_demand
 from designer.workspace.refine import Worst, worst_over_samples

@@ -13,15 +13,8 @@ from designer.model.requirement import Requirement, State
 from designer.progress import Reporter
 from designer.selection.candidate import Candidate
 from designer.selection.criteria import Criterion
-from designer.selection.requirements import (
-    Evaluation,
-    drum_of,
-    evaluate,
-    loads_of,
-    sheave_ratio_of,
-    strength_of,
-)
-from designer.selection.spooling import spooling_of
+from designer.selection.reeving import drum_of, sheave_ratio_of, spooling_of
+from designer.selection.requirements import Evaluation, evaluate, loads_of, strength_of
 from designer.study import Selection
 
 

@@ -41,10 +41,9 @@ from designer.selection.cases import (
 from designer.selection.compare import best_of, may_win, settle, settle_standing
 from designer.selection.continuous import ContinuousOptimum, continuous_optima
 from designer.selection.criteria import criteria_of
-from designer.selection.efficiency import Allowance, why_not_bent
 from designer.selection.objectives import MEANINGS, CandidateFigures
 from designer.selection.prices import offered, with_prices
-from designer.selection.requirements import sheave_ratio_of
+from designer.selection.reeving import Allowance, sheave_ratio_of, why_not_bent
 from designer.selection.result import GradeOutcome, NotTried, Outcome, SelectionResult
 from designer.selection.screen import Screen
 from designer.selection.usable import Usable, serves, usable

@@ -19,8 +19,8 @@ from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.phrases import orientation_words
 from designer.selection.candidate import Candidate
-from designer.selection.efficiency import Allowance
 from designer.selection.objectives import MEANINGS
+from designer.selection.reeving import Allowance
 from designer.statics.task import LONG
 from designer.study import Study, rope_effects
 
