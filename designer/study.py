@@ -14,15 +14,12 @@ from designer.effects.design import AsBuilt, built_with
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED, KnownEffects
 from designer.errors import Fault, InputError, MissingLibraryError
-from designer.model.cable import Material, MaterialName, Trust
-from designer.model.duty import RUNNING_ROPE, SOURCE, DutyClass
+from designer.model.cable import Material, MaterialName, Preference, PriceList, Trust
 from designer.model.load_case import EACH, LoadCase
-from designer.model.machine import TEMPERATE, Machine, Surroundings
 from designer.model.measurements import Measurements
-from designer.model.price_list import PriceList
-from designer.model.robot import Poses, Robot
-from designer.model.rope_life import RopeLife
+from designer.model.robot import TEMPERATE, Machine, Poses, Robot, Surroundings
 from designer.model.uncertainty import Uncertainty
+from designer.model.winches import RUNNING_ROPE, SOURCE, DutyClass, RopeLife
 from designer.model.workspace import Workspace
 from designer.resources import missing_library
 
@@ -116,6 +113,8 @@ class Selection:
         The lowest trust of figures that is tried, of grades that the study does not name.
     materials : tuple of str
         Materials to consider; empty for all.
+    prefer : str
+        Units of the sizes that take the place of others as good as they are.
     """
 
     grades: tuple[str, ...] | None = None
@@ -131,6 +130,7 @@ class Selection:
     price_list: PriceList | None = None
     trust: Trust = "B"
     materials: tuple[MaterialName, ...] = ()
+    prefer: Preference = "metric"
 
     def __post_init__(self) -> None:
         checked.check_fields(self)

@@ -9,10 +9,7 @@ from functools import cache
 from pathlib import Path
 
 import designer
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
-from designer.model.rectangle import Rectangle
-from designer.model.region import Region
+from designer.model.region import PointList, Prism, Rectangle, Region
 
 ROOMS = [
     "__init__", "errors", "arrays", "spelling", "checked", "units", "resources", "progress",

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from designer.arrays import FloatArray
 from designer.documents.plain import Json, csv_text, plain, record
-from designer.model.price_list import PriceList
+from designer.model.cable import PriceList
 from designer.model.space import turn_of
 from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate
@@ -34,8 +34,14 @@ def selection_dict(
         for c in o.candidates
     }
     chosen, usable, untrusted = selection.chosen, selection.usable, selection.untrusted
+    rival = chosen and chosen.preferred_to
     return {
         "objectives": selection.objectives,
+        "preference": {
+            "units": selection.prefer,
+            "instead_of": rival and rows[rival],
+            "why": selection.preference or None,
+        },
         "currency": selection.currency,
         "price_estimate": selection.price_estimate,
         "price_list": selection.price_list and _prices(selection.price_list),

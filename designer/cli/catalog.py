@@ -143,8 +143,8 @@ def catalog_check(
 
     Example:  designer catalog check my-ropes/
     """
-    from designer.grades.files import read_grades
     from designer.grades.listing import summary, ton_remarks
+    from designer.grades.registry import read_grades
 
     if path is not None:
         files, faults = read_grades(path, needs_any=True)

@@ -150,7 +150,7 @@ def _choose(figure: str, heads: Sequence[str], why: str) -> int | None:
 
 def _units(table: MakerTable, named: Mapping[str, str]) -> dict[str, str]:
     """Return the unit of each figure: as an option has it, as the table prints it, or as asked."""
-    from designer.grades.parts import DIMENSIONS
+    from designer.grades.grade import DIMENSIONS
     from designer.io.maker_table import SIZE, known_unit
 
     units: dict[str, str] = {}

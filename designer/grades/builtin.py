@@ -12,8 +12,8 @@ from pathlib import Path
 
 from platformdirs import user_cache_path
 
-from designer.grades.files import read_grades
 from designer.grades.grade import Grade
+from designer.grades.registry import read_grades
 from designer.grades.standard_rope import standard_ropes
 from designer.plugins import hookimpl
 from designer.resources import data_folder

@@ -11,8 +11,7 @@ from pathlib import Path
 
 from designer.documents.opened import open_input, reason
 from designer.errors import Fault, InputError, visible
-from designer.grades.grade import MOST_SIZES
-from designer.grades.parts import DIMENSIONS
+from designer.grades.grade import DIMENSIONS, MOST_SIZES
 from designer.io.pdf_table import pdf_rows
 from designer.measured.table import cells_of
 from designer.units import QuantityError, describe, read_quantity

@@ -19,8 +19,8 @@ from designer.analysis.edge import EdgeProfile
 from designer.analysis.maps import Served, WorkspaceMaps
 from designer.arrays import FloatArray
 from designer.model.region import Region
-from designer.model.requirement import State
 from designer.model.space import Orientations
+from designer.model.verdict import State
 from designer.report import format as fmt
 from designer.report.figures.colours import DIAMETER, RATIO
 from designer.selection.assignment import Assignment

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -13,9 +14,9 @@ import numpy as np
 from designer import checked
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade, Size
-from designer.model.cable import Cable
+from designer.model.cable import Cable, SizeUnits
 from designer.model.load_case import STATIC
-from designer.model.requirement import Requirement
+from designer.model.verdict import Requirement
 from designer.selection.cases import CaseResult, governing
 from designer.selection.objectives import UNKNOWN, CandidateFigures
 from designer.selection.reeving import Allowance
@@ -26,6 +27,8 @@ Standing = Literal[
     "chosen", "undominated", "dominated", "not_comparable", "rejected", "too_thin", "not_held"
 ]
 """What became of a candidate; those of the first two span the Pareto set."""
+_INCHES = ("in", "inch", "ft", "foot", "feet")
+_IN_INCHES = re.compile(r"\d\s*(in\.?|inch|inches|[\"″])$")
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -58,6 +61,8 @@ class Candidate(checked.Shown):
         Why, for the reader of a report: decided once, read by all pages and files.
     dominated_by : Candidate or None
         A candidate that is as good in everything it is compared by and better in something.
+    preferred_to : Candidate or None
+        The best one, where this one is as good and is chosen for the units of its size.
     requirements : tuple of Requirement
         All that the study asks of it; empty where that was not evaluated in full.
     """
@@ -73,6 +78,7 @@ class Candidate(checked.Shown):
     standing: Standing | Literal[""] = ""
     reason: str = ""
     dominated_by: Candidate | None = None
+    preferred_to: Candidate | None = None
     requirements: tuple[Requirement, ...] = ()
 
     @property
@@ -89,6 +95,13 @@ class Candidate(checked.Shown):
     def label(self) -> str:
         """Size and grade in one line."""
         return f"{self.size.id} of {self.grade.id}"
+
+    @property
+    def units(self) -> SizeUnits:
+        """What its size is named in; else what the table of its grade gives diameters in."""
+        table = self.grade.units
+        in_inches = table is not None and table.diameter in _INCHES
+        return "imperial" if in_inches or _IN_INCHES.search(self.size.id) else "metric"
 
     @property
     def largest_strain(self) -> float:

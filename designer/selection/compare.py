@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
+from designer.model.cable import Preference
 from designer.model.load_case import STATIC
 from designer.selection.candidate import Candidate, Standing
 from designer.selection.objectives import MEANINGS
@@ -19,6 +20,10 @@ from designer.study import Objective
 Search = Callable[[Sequence[Candidate]], Sequence[Verification]]
 """Searches several candidates between the samples."""
 
+AS_GOOD = 0.02
+"""By how much a size may be worse in anything compared and still be as good: less than EN 12385-4
+lets the diameter of a rope, and with it its mass, differ from the nominal one (0 to 5 %)."""
+_VISIBLE = 5e-4  # Change of a figure that shows with one decimal of a percent
 _ROUNDING_MM = 1e-6
 NEAR_LIMIT = 0.9
 """Utilisation over the samples from where a search between them may well pass the limit."""
@@ -29,9 +34,13 @@ def settle(
     objectives: Sequence[Objective],
     search: Search,
     *,
+    prefer: Preference = "none",
     searches_others: bool = True,
 ) -> list[Candidate]:
     """Return the Pareto set, the best first, each member searched between the samples.
+
+    A size in the units to ``prefer``, of the set or not, comes first if it is worse than the
+    best by `AS_GOOD` at most in each objective.
 
     The search can only raise tensions and lengths, and what it raises is compared again. With
     ``searches_others`` the best of each grade are searched as well, and whoever is near its limit;
@@ -43,6 +52,10 @@ def settle(
         front = [holding[k] for k in np.flatnonzero(is_undominated(burdens(holding, objectives)))]
         pending = _search_all(front, search)
     front.sort(key=lambda candidate: candidate.key(objectives))
+    while (as_good := _preferred(candidates, front, objectives, prefer)) is not None:
+        if not _search_all([as_good], search):
+            front = [as_good, *(c for c in front if c is not as_good)]
+            break
     if not searches_others:
         return front
     of_grades = [
@@ -55,6 +68,52 @@ def settle(
     near_limit = [c for c in holding if c.verification.utilisation > NEAR_LIMIT]
     _search_all(near_limit, search)
     return front
+
+
+def _preferred(
+    candidates: Sequence[Candidate],
+    front: Sequence[Candidate],
+    objectives: Sequence[Objective],
+    prefer: Preference,
+) -> Candidate | None:
+    """Return the best size in these units that is as good as the best one in others, if any."""
+    if not front or prefer in ("none", front[0].units):
+        return None
+    best = burdens(front[:1], objectives)
+    in_units = [c for c in candidates if c.units == prefer and may_win(c, objectives)]
+    is_as_good = (burdens(in_units, objectives) <= best + AS_GOOD * np.abs(best)).all(axis=1)
+    as_good = [in_units[k] for k in np.flatnonzero(is_as_good)]
+    return min(as_good, key=lambda candidate: candidate.key(objectives), default=None)
+
+
+def preference_words(candidate: Candidate, objectives: Sequence[Objective]) -> str:
+    """Return what a size is chosen instead of for its units, and what that costs; empty if not."""
+    rival = candidate.preferred_to
+    if rival is None:
+        return ""
+    changes = changed_figures(candidate, rival, objectives)
+    return (
+        f"{candidate.size.id} instead of {rival.label}{_in_mm(rival)}, as {candidate.units} sizes "
+        f"are preferred: {changes}"
+    )
+
+
+def changed_figures(candidate: Candidate, rival: Candidate, objectives: Sequence[Objective]) -> str:
+    """Return by how much a size differs from another in what is compared, in mass and in price."""
+    others: set[Objective] = {"mass", "cost"}
+    changes = []
+    for objective in (*objectives, *sorted(others - {*objectives})):
+        change = candidate.figures.value(objective) / rival.figures.value(objective) - 1.0
+        if abs(change) >= _VISIBLE:
+            percent = f"{100.0 * change:+.{1 if abs(change) < 1.0 else 0}f}"
+            percent = percent.replace("-", "\N{MINUS SIGN}")
+            changes.append(f"{percent} % {MEANINGS[objective].word}")
+    return ", ".join(changes) or "no difference"
+
+
+def _in_mm(candidate: Candidate) -> str:
+    is_metric = candidate.units == "metric"
+    return "" if is_metric else f" ({1e3 * candidate.size.diameter_m:.4g} mm)"
 
 
 def best_of(candidates: Sequence[Candidate], objectives: Sequence[Objective]) -> Candidate | None:
@@ -113,8 +172,8 @@ def _standing(
         return "rejected", failed
     if not may_win(candidate, objectives):
         return "not_comparable", f"its {MEANINGS[objectives[0]].word} is not known"
-    if best is not None and candidate in front:
-        return _standing_in_front(candidate, best, objectives, failed)
+    if candidate in front:
+        return _standing_in_front(candidate, front, objectives, failed)
     number = dominator_of(burdens([candidate], objectives)[0], burdens(front, objectives))
     assert number is not None  # else it would be in the set
     candidate.dominated_by = front[number]
@@ -125,9 +184,17 @@ def _standing(
 
 
 def _standing_in_front(
-    candidate: Candidate, best: Candidate, objectives: Sequence[Objective], failed: str | None
+    candidate: Candidate,
+    front: Sequence[Candidate],
+    objectives: Sequence[Objective],
+    failed: str | None,
 ) -> tuple[Standing, str]:
+    best = front[0]
     if candidate is best:
+        first = min(front, key=lambda c: c.key(objectives))
+        best.preferred_to = None if first is best else first
+        if best.preferred_to is not None:
+            return "chosen", preference_words(best, objectives)
         words = f"best in {MEANINGS[objectives[0]].title}"
         return "chosen", words if failed is None else f"{words} of what is strong enough; {failed}"
     ours, theirs = candidate.figures, best.figures

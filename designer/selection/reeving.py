@@ -44,9 +44,8 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable, Material
-from designer.model.drum import Drum
-from designer.model.requirement import Requirement, State
-from designer.model.winches import Winches
+from designer.model.verdict import Requirement, State
+from designer.model.winches import Drum, Winches
 from designer.study import Selection
 
 _RATIO_SOURCE = "Japanese crane ordinance, table hor1-10-6-2-2, sheaves, lowest class"

@@ -18,9 +18,8 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
-from designer.model.requirement import Requirement, State
 from designer.model.robot import Poses, Robot
-from designer.model.verdict import Verdict
+from designer.model.verdict import Requirement, State, Verdict
 from designer.model.workspace import Workspace
 from designer.progress import Advance, steps
 from designer.selection.cases import CaseResult, governing_directions, worst_load_direction

@@ -9,13 +9,12 @@ from typing import ClassVar, Literal
 
 from designer import checked
 from designer.grades.grade import Grade, Size
-from designer.model.cable import Material
+from designer.model.cable import Material, Preference, PriceList
 from designer.model.load_case import STATIC
-from designer.model.price_list import PriceList
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.selection.candidate import Candidate, Standing
-from designer.selection.compare import rejection_words
+from designer.selection.compare import AS_GOOD, changed_figures, preference_words, rejection_words
 from designer.selection.prices import PriceEstimate
 from designer.selection.usable import Usable
 from designer.study import Objective
@@ -189,6 +188,8 @@ class SelectionResult(checked.Shown):
         Where none was chosen: grades outside the study's list that would hold.
     objectives : tuple of str
         What candidates were compared by, the one that decides first.
+    prefer : str
+        Units of the sizes that take the place of others as good as they are.
     currency : str or None
         Of the costs; None where nothing has a price.
     price_estimate : PriceEstimate or None
@@ -213,6 +214,7 @@ class SelectionResult(checked.Shown):
     reason: str | None
     alternatives: tuple[GradeOutcome, ...] = ()
     objectives: tuple[Objective, ...] = ("mass",)
+    prefer: Preference = "none"
     currency: str | None = None
     price_estimate: PriceEstimate | None = None
     price_list: PriceList | None = None
@@ -225,6 +227,21 @@ class SelectionResult(checked.Shown):
     def candidates(self) -> tuple[Candidate, ...]:
         """All sizes that were solved."""
         return tuple(c for outcome in self.outcomes for c in outcome.candidates)
+
+    @property
+    def preference(self) -> str:
+        """What the preference of units came to; empty where the best has them, or none is set."""
+        chosen = self.chosen
+        if chosen is None or chosen.preferred_to is not None:
+            return "" if chosen is None else preference_words(chosen, self.objectives)
+        fitting = [o.best for o in self.outcomes if o.best is not None and o.outcome == "fits"]
+        others = [best for best in fitting if best.units == self.prefer != chosen.units]
+        if not others:
+            return ""
+        best = min(others, key=lambda candidate: candidate.key(self.objectives))
+        changes = changed_figures(best, chosen, self.objectives)
+        as_good = f"no {self.prefer} size is as good within {AS_GOOD:.0%}".replace("%", " %")
+        return f"{as_good}; the best is {best.label}: {changes}"
 
     @property
     def exclusions(self) -> tuple[Exclusion, ...]:

@@ -99,6 +99,7 @@ def select(
         reason=_reason(outcomes, not_tried, selection) if explains and chosen is None else None,
         alternatives=tuple(alternatives),
         objectives=selection.objectives,
+        prefer=selection.prefer,
         currency=run.currency,
         price_estimate=price_estimate,
         price_list=selection.price_list,
@@ -261,7 +262,10 @@ class _SelectionRun:
                 meeting = [c for c in candidates if c.rejected_by is None]
                 meets_all = any(may_win(c, objectives) for c in meeting)
                 allowed = meeting if meets_all else candidates
-                front = settle(allowed, objectives, search, searches_others=self.explains)
+                prefer = self.selection.prefer if meets_all else "none"
+                front = settle(
+                    allowed, objectives, search, prefer=prefer, searches_others=self.explains
+                )
                 if not front:
                     break
                 best = front[0]

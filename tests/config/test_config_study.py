@@ -11,12 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from designer.documents.section import Section
+from designer.documents.fields import Section
 from designer.errors import InputError
-from designer.io.config import columns, read_study, schema
+from designer.io.config import read_study, schema
 from designer.model.measurements import LogColumn
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.uncertainty import Uniform
 from designer.model.workspace import Workspace
 from designer.resources import data_folder, example_file
@@ -197,6 +196,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("selection.grades", "default", "all"),
         Entry("selection.trust", "default", "B"),
         Entry("selection.materials", "default", "all"),
+        Entry("selection.prefer", "default", "study"),
         Entry("selection.safety_factor", "4", "4"),
         Entry("selection.duty_class", "default", "none"),
         Entry("selection.objectives", "default", "[mass, drum_diameter, max_tension]"),
@@ -317,7 +317,7 @@ def test_the_starter_config_shows_every_field() -> None:
     names = set(re.findall(r"\b(\w+):", text))
     sections = [
         value
-        for value in (*vars(schema).values(), *vars(columns).values())
+        for value in vars(schema).values()
         if isinstance(value, type) and issubclass(value, Section)
     ]
     known = {name for section in sections for name in section.model_fields}
@@ -341,3 +341,24 @@ def test_values_made_in_python_have_the_defaults_of_a_config(study_of: StudyOf, 
     for field in fields(Workspace):
         if field.name not in {"region", "orientations", "proof_s"}:
             assert getattr(made, field.name) == getattr(read, field.name), field.name
+
+
+@pytest.mark.parametrize(
+    ("anchors", "prefer", "expected"),
+    [
+        ("[[0, 0, 12], [30 m, 0, 12], [15, 26, 12]]", "", "metric"),
+        ("[[0 ft, 0 ft, 40 ft], [100 ft, 0 ft, 40 ft], [50 ft, 85 ft, 40 ft]]", "", "imperial"),
+        ("[[0, 0, 12], [30 m, 0, 12], [15, 26, 12]]", "imperial", "imperial"),
+    ],
+)
+def test_sizes_are_preferred_in_units_of_the_study(
+    anchors: str, prefer: str, expected: str, study_of: StudyOf
+) -> None:
+    selection = f"selection: {{prefer: {prefer}}}" if prefer else "selection: {}"
+    study = study_of(
+        f"robot: {{anchors: {anchors}, platform: {{mass: 100}}}}\n"
+        "cable: {density: 7800, youngs_modulus: 60 GPa, allowable_stress: 200 MPa}\n"
+        f"workspace: {{region: {{points: [[12, 9, 2]]}}}}\n{selection}\n"
+    )
+    assert study.selection is not None
+    assert study.selection.prefer == expected

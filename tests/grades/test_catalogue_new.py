@@ -19,8 +19,7 @@ from typer.testing import CliRunner, Result
 from designer.cli import catalog_new, terminal
 from designer.cli.commands import app
 from designer.errors import InputError
-from designer.grades.files import read_grade
-from designer.grades.registry import load_catalogue
+from designer.grades.registry import load_catalogue, read_grade
 from designer.io import pdf_table
 from designer.io.maker_table import known_unit, read_maker_table
 
@@ -52,7 +51,7 @@ PRINTED = (
 
 
 @pytest.fixture(autouse=True)
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def pose_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each test has a folder of its own; tables print unbroken."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(terminal, "_out", terminal.Console(highlight=False, width=200))

@@ -16,9 +16,7 @@ from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.model.cable import Cable
 from designer.model.load_case import Ice, LoadCase, Loaded, Wind
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
-from designer.model.region import Region
+from designer.model.region import PointList, Prism, Region
 from designer.model.robot import Poses
 from designer.model.workspace import Workspace
 from designer.resources import example_file

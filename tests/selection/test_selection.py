@@ -10,8 +10,7 @@ from ropes import rope
 
 from designer.grades.grade import Grade
 from designer.model.load_case import STATIC, LoadCase, Wind
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.robot import Poses
 from designer.model.workspace import Workspace
 from designer.selection.assignment import for_all

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,12 +12,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from ropes import rope
 
+from designer.analysis.selection_json import selection_dict
 from designer.arrays import frozen_array
-from designer.model.cable import Cable
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.grades.grade import Grade, Units
+from designer.model.cable import Cable, Preference
+from designer.model.region import PointList, Prism
 from designer.model.workspace import Workspace
-from designer.selection.candidate import common_currency
+from designer.selection.candidate import Candidate, common_currency
 from designer.selection.compare import dominator_of, is_undominated
 from designer.selection.objectives import MEANINGS, CandidateFigures
 from designer.selection.select import best_product, select
@@ -189,3 +191,65 @@ def test_search_finds_softer_poses_than_the_samples(fast_robot, steel) -> None:
         for searched in (False, True)
     )
     assert found < 0.99 * sampled
+
+
+def in_inches(weight: float, strength: float = 1.0) -> Grade:
+    """Return a like grade of the sizes of `SIZES`, named in inches."""
+    grade = rope("inches", SIZES, weight=weight, strength=strength)
+    sizes = (replace(size, id=f"{k}/32 in") for k, size in enumerate(grade.sizes, 17))
+    return replace(grade, sizes=tuple(sizes))
+
+
+@pytest.mark.cases_by_default(2)
+@pytest.mark.parametrize(
+    ("weight", "prefer", "chosen", "words"),
+    [
+        (0.993, "metric", "metric", "16 mm instead of 18/32 in of inches (16 mm), as metric sizes"),
+        (
+            0.95,
+            "metric",
+            "inches",
+            "no metric size is as good within 2 %; the best is 16 mm of metric: ",
+        ),
+        (0.993, "none", "inches", ""),
+        (0.993, "imperial", "inches", ""),
+    ],
+)
+def test_preferred_units_decide_between_sizes_as_good(
+    weight: float, prefer: Preference, chosen: str, words: str, fast_robot, workspace
+) -> None:
+    grades = [rope("metric", SIZES), in_inches(weight)]
+    selection = Selection(None, 2.0, ("mass", "max_tension"), prefer=prefer)
+    found = select(fast_robot, workspace, selection, grades)
+    assert found.chosen is not None
+    assert found.chosen.grade.id == chosen
+    assert found.preference.startswith(words)
+    assert bool(words) == bool(found.preference)
+    assert found.front[0] is found.chosen
+    alone = best_product(fast_robot, workspace, selection, grades)
+    assert alone is not None
+    assert alone.grade.id == chosen
+    preference = selection_dict(found, None, None)["preference"]
+    if found.chosen.preferred_to is not None:
+        ratio = found.chosen.figures.mass_kg / preference["instead_of"]["total_mass_kg"]
+        assert 1.0 < ratio < 1.02
+        assert f"+{100 * ratio - 100:.1f} % mass" in found.preference == preference["why"]
+        assert found.chosen.verified
+    else:
+        assert preference["instead_of"] is None
+
+
+@pytest.mark.parametrize(
+    ("id", "units", "expected"),
+    [
+        ("7/32 in", None, "imperial"),
+        ('1/2"', None, "imperial"),
+        ("19 mm (3/4 in)", None, "metric"),
+        ("DC 160", "mm", "metric"),
+        ("No. 7", "in", "imperial"),
+    ],
+)
+def test_units_of_sizes(id: str, units: str | None, expected: str) -> None:
+    grade = replace(rope("grade", [10.0]), units=units and Units(diameter=units))
+    size = replace(grade.sizes[0], id=id)
+    assert Candidate(grade, size, SimpleNamespace()).units == expected

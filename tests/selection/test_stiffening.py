@@ -13,12 +13,10 @@ from grade_samples import family_grade
 from scipy.optimize import brentq
 
 from designer.effects.design import AsBuilt
-from designer.grades.grade import Grade
-from designer.grades.parts import RelativeStiffness
+from designer.grades.grade import Grade, RelativeStiffness
 from designer.model.cable import Cable, Stiffening
 from designer.model.load_case import LoadCase, Wind
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
 from designer.progress import Advance

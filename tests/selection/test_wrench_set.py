@@ -10,9 +10,8 @@ from scipy.optimize import linprog
 
 import designer
 from designer.model.cable import Cable
-from designer.model.load_case import LoadCase, Loaded
+from designer.model.load_case import LoadCase, Loaded, WrenchSet
 from designer.model.robot import Platform, Poses, Robot
-from designer.model.wrench_set import WrenchSet
 from designer.selection.cases import worst_load_direction
 from designer.statics.inverse import solve_massless, solve_sagging
 

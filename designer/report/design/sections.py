@@ -23,8 +23,8 @@ from designer.analysis.reactions import Reaction
 from designer.analysis.sensitivities import Sensitivities
 from designer.grades.grade import NOT_NAMED, TRUST_MEANING
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
-from designer.model.drum import DEAD_TURNS
 from designer.model.verdict import Verdict
+from designer.model.winches import DEAD_TURNS
 from designer.proof.prove import Proof
 from designer.report import format as fmt
 from designer.report.design.first_page import by_title, outside_pose
