@@ -17,12 +17,11 @@ from designer.model.cable import Cable, Cables
 from designer.model.load_case import STATIC, Loaded
 from designer.model.verdict import Answer, Requirement, State, Verdict
 from designer.progress import Reporter
-from designer.selection.assignment import Assignment
+from designer.selection.assignment import Assignment, DesignCable
 from designer.selection.candidate import Candidate
 from designer.selection.criteria import criteria_of, rope_diameter_m
-from designer.selection.family_need import CaseNeed
+from designer.selection.family import CaseNeed
 from designer.selection.groups.result import GroupChoice
-from designer.selection.qualities import DesignCable
 from designer.selection.reeving import drum_of, sheave_ratio_of, spooling_of
 from designer.selection.requirements import (
     CaseLoads,

@@ -24,7 +24,7 @@ from designer.model.robot import Robot
 from designer.model.workspace import Workspace
 from designer.progress import SILENT, Reporter
 from designer.selection.assignment import NOT_ASSIGNED, Assignment, GroupVerification
-from designer.selection.candidate import Candidate, candidates_of, priced, undominated
+from designer.selection.candidate import Candidate, candidates_of, offered, priced, undominated
 from designer.selection.groups.balance import balance_at, is_sound
 from designer.selection.groups.blocks import block_by_trial, block_by_weight, is_monotone
 from designer.selection.groups.master import Block, Combination, Guide, Master, alone
@@ -36,7 +36,6 @@ from designer.selection.groups.result import (
     TriedAssignment,
 )
 from designer.selection.groups.trials import Refutation, Trials, verify_groups
-from designer.selection.prices import offered
 from designer.study import CableGroup, Selection
 
 MOST_PROPOSALS = 100
