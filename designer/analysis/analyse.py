@@ -46,8 +46,7 @@ from designer.selection.assignment import Assignment, Qualities, for_all, qualit
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult
 from designer.selection.family import CaseNeed, family_needs, governing_need
-from designer.selection.groups.choose import choose_groups_of
-from designer.selection.groups.result import GroupChoice
+from designer.selection.groups import GroupChoice, choose_groups_of
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.sizing.newton import Sizing, size_poses

@@ -21,7 +21,7 @@ from designer.selection.assignment import Assignment, DesignCable
 from designer.selection.candidate import Candidate
 from designer.selection.criteria import criteria_of, rope_diameter_m
 from designer.selection.family import CaseNeed
-from designer.selection.groups.result import GroupChoice
+from designer.selection.groups import GroupChoice
 from designer.selection.reeving import drum_of, sheave_ratio_of, spooling_of
 from designer.selection.requirements import (
     CaseLoads,
