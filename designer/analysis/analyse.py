@@ -42,13 +42,11 @@ from designer.model.verdict import Answer, Requirement, State, Verdict, answer_o
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Budget
 from designer.proof.servable import Servable, servable
-from designer.selection.assignment import Assignment, for_all
+from designer.selection.assignment import Assignment, Qualities, for_all, qualities_of
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult
-from designer.selection.family_need import CaseNeed, family_needs, most_needed
-from designer.selection.groups.choose import choose_groups_of
-from designer.selection.groups.result import GroupChoice
-from designer.selection.qualities import Qualities, qualities_of
+from designer.selection.family import CaseNeed, family_needs, governing_need
+from designer.selection.groups import GroupChoice, choose_groups_of
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.sizing.newton import Sizing, size_poses
@@ -434,9 +432,9 @@ class Analysis(checked.Shown):
         return tuple(sorted(unmet, key=lambda requirement: requirement.state is State.OPEN))
 
     @property
-    def most_needed(self) -> CaseNeed | None:
+    def governing_need(self) -> CaseNeed | None:
         """The load case that needs the thickest cable of the family, or one that none holds."""
-        return most_needed(self.needs)
+        return governing_need(self.needs)
 
     @property
     def chosen(self) -> Candidate | None:

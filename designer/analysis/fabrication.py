@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from designer.analysis.analyse import Analysis
 from designer.grades.grade import Grade, Size
 from designer.model.winches import DEAD_TURNS, Drum
-from designer.selection.spooling import Spooled, spooled_on
+from designer.selection.reeving import Spooled, spooled_on
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from designer.arrays import FloatArray
 from designer.model.polygon import every_second
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
-from designer.selection.usable import Usable, UsableSize
+from designer.selection.result import CoveredSize, SizeCoverage
 from designer.statics.inverse import solve_sagging
 from designer.workspace.demand import is_counted
 
@@ -38,7 +38,7 @@ class Layers:
         be held or does not count.
     """
 
-    sizes: tuple[UsableSize, ...]
+    sizes: tuple[CoveredSize, ...]
     grids_m: tuple[FloatArray, ...]
     utilisation: FloatArray
 
@@ -48,7 +48,7 @@ class Layers:
         return np.concatenate([grid.reshape(-1, 3) for grid in self.grids_m])
 
 
-def layers_of(maps: WorkspaceMaps, usable: Usable) -> Layers | None:
+def layers_of(maps: WorkspaceMaps, usable: SizeCoverage) -> Layers | None:
     """Solve the outside of the opened region with the sizes that are shown.
 
     None for a list of points, and where no size serves a part only.
@@ -67,7 +67,7 @@ def layers_of(maps: WorkspaceMaps, usable: Usable) -> Layers | None:
     return Layers(sizes, grids, np.stack(used))
 
 
-def chosen_sizes(usable: Usable) -> tuple[UsableSize, ...]:
+def chosen_sizes(usable: SizeCoverage) -> tuple[CoveredSize, ...]:
     """Return a few sizes that serve a part, spread over their shares, and one that serves all.
 
     Thinnest first. Empty where no size serves a part only.
@@ -83,7 +83,7 @@ def chosen_sizes(usable: Usable) -> tuple[UsableSize, ...]:
 
 
 def _utilisation(
-    robot: Robot, workspace: Workspace, size: UsableSize, position_m: FloatArray
+    robot: Robot, workspace: Workspace, size: CoveredSize, position_m: FloatArray
 ) -> FloatArray:
     largest = np.zeros(position_m.shape[:-1])
     turns = workspace.orientations.at(position_m.reshape(-1, 3))

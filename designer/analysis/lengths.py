@@ -15,7 +15,7 @@ from designer.measured.assign import POSITION, ROTATION_VECTOR, length_names, te
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.progress import Advance
-from designer.selection.qualities import DesignCable
+from designer.selection.assignment import DesignCable
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.rest import find_equilibria, spread_poses
 from designer.study import Study, declared_settings

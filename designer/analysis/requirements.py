@@ -17,23 +17,20 @@ from designer.model.cable import Cable, Cables
 from designer.model.load_case import STATIC, Loaded
 from designer.model.verdict import Answer, Requirement, State, Verdict
 from designer.progress import Reporter
-from designer.selection.assignment import Assignment
+from designer.selection.assignment import Assignment, DesignCable
 from designer.selection.candidate import Candidate
 from designer.selection.criteria import criteria_of, rope_diameter_m
-from designer.selection.family_need import CaseNeed
-from designer.selection.groups.result import GroupChoice
-from designer.selection.qualities import DesignCable
+from designer.selection.family import CaseNeed
+from designer.selection.groups import GroupChoice
+from designer.selection.reeving import drum_of, sheave_ratio_of, spooling_of
 from designer.selection.requirements import (
     CaseLoads,
     at_place,
-    drum_of,
     equilibrium_of,
     evaluate,
     extreme_lengths_m,
-    sheave_ratio_of,
 )
 from designer.selection.result import SelectionResult
-from designer.selection.spooling import spooling_of
 from designer.sizing.newton import size_poses
 from designer.statics.free_motion import FreeMotion
 from designer.study import Selection, Study

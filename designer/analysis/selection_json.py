@@ -10,7 +10,7 @@ from designer.model.cable import PriceList
 from designer.model.space import rotation_vector_of
 from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate
-from designer.selection.groups.result import GroupChoice
+from designer.selection.groups import GroupChoice
 from designer.selection.result import GradeOutcome, SelectionResult
 
 _LISTS = {

@@ -45,7 +45,7 @@ from designer.model.workspace import Workspace
 from designer.progress import Advance, Reporter
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult
-from designer.selection.efficiency import Allowance
+from designer.selection.reeving import Allowance
 from designer.selection.result import SelectionResult
 from designer.statics.geometry import upright_situation
 from designer.statics.sizes import add_slowly, is_quick, meet

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from designer.analysis.pose import PoseAnalysis
     from designer.diagnosis.check import Check
     from designer.diagnosis.result import Diagnosis, Estimate
-    from designer.selection.groups.result import GroupChoice
+    from designer.selection.groups import GroupChoice
     from designer.selection.result import SelectionResult
     from designer.study import Selection, Study
     from designer.workspace.sweep import WorkspaceMap

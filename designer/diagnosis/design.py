@@ -14,7 +14,7 @@ from designer.model.uncertainty import MAX_DEVIATION, Uncertainty
 from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate
 from designer.selection.cases import converge_stiffness
-from designer.selection.efficiency import Allowance, bending_efficiency
+from designer.selection.reeving import Allowance, bending_efficiency
 from designer.selection.select import best_product
 from designer.selection.verify import verify
 from designer.study import DeclaredEffect, Study, as_built_by

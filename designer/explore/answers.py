@@ -32,12 +32,11 @@ from designer.model.workspace import Workspace
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Proof
 from designer.report import format as fmt
-from designer.selection.candidate import Candidate, undominated
+from designer.selection.candidate import UNKNOWN, Candidate, CandidateFigures, undominated
 from designer.selection.cases import Cases, envelope, governing, refine_all
 from designer.selection.compare import burdens, is_undominated, rejection_words
-from designer.selection.groups.result import GroupChoice
-from designer.selection.groups.trials import verify_groups
-from designer.selection.objectives import UNKNOWN, CandidateFigures
+from designer.selection.groups import GroupChoice
+from designer.selection.refutation import verify_groups
 from designer.selection.result import SelectionResult
 from designer.selection.select import at_samples
 from designer.selection.verify import NOT_TRIED, Verification

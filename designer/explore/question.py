@@ -26,7 +26,7 @@ from designer.plugins import Plugins
 from designer.progress import Advance
 from designer.selection.candidate import Candidate, candidates_of
 from designer.selection.cases import FEW_AT_FIRST, converge_stiffness
-from designer.selection.efficiency import Allowance
+from designer.selection.reeving import Allowance
 from designer.selection.select import at_samples
 from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Study, as_built_by, require_enough_cables

@@ -50,8 +50,7 @@ from designer.grades.registry import Catalogue, cached_catalogue
 from designer.io.config.reader import checked, study_of
 from designer.model.verdict import Verdict
 from designer.plugins import Plugins, find_plugins
-from designer.selection.candidate import common_currency
-from designer.selection.prices import offered, with_prices
+from designer.selection.candidate import common_currency, offered, with_prices
 from designer.spelling import did_you_mean
 from designer.study import Study
 from designer.units import describe

@@ -20,7 +20,7 @@ from designer.report.design.drawings import Drawings
 from designer.report.design.report import design_report, section
 from designer.report.figures.sections import section_map
 from designer.report.render import render_html
-from designer.selection.qualities import Qualities
+from designer.selection.assignment import Qualities
 
 pytestmark = pytest.mark.slow
 

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from designer.explore.answers import RopeRow, Ropes
     from designer.explore.measurements import DiagnosisAnswer, Residuals
     from designer.explore.question import Rope, RopePerCable
-    from designer.selection.groups.result import GroupChoice
+    from designer.selection.groups import GroupChoice
 
 _NOT_EVALUATED = "Not known yet: the full selection evaluates all that the study asks for."
 _UNMET_FIRST = (State.FAILS, State.OPEN, State.HOLDS)

@@ -17,9 +17,8 @@ from designer.model.robot import SAG_AT_MOST
 from designer.model.verdict import Requirement, State, Verdict
 from designer.report import format as fmt
 from designer.report.phrases import orientation_words
-from designer.selection.candidate import Candidate
-from designer.selection.efficiency import Allowance
-from designer.selection.objectives import MEANINGS
+from designer.selection.candidate import MEANINGS, Candidate
+from designer.selection.reeving import Allowance
 from designer.statics.task import LONG
 from designer.study import Study, rope_effects
 
@@ -120,7 +119,7 @@ def first_page(analysis: Analysis) -> Context:
         "answer": analysis.answer.value,
         "unmet": [Unmet(tuple(cases)) for cases in unmet_by_title(analysis.unmet)],
         "chosen": analysis.assignment.rope,
-        "need": analysis.most_needed,
+        "need": analysis.governing_need,
         "groups": analysis.groups,
         "untrusted": selection and selection.untrusted,
         "deciding": selection and MEANINGS[selection.objectives[0]],
@@ -180,7 +179,7 @@ def _card(analysis: Analysis) -> Context:
         return {"longest_m": each, "diameter": None}
     if chosen is not None:
         return {"strength": _strength(analysis, chosen), "diameter": None}
-    return {"diameter": None if analysis.most_needed is not None else _diameter(analysis)}
+    return {"diameter": None if analysis.governing_need is not None else _diameter(analysis)}
 
 
 def _strength(analysis: Analysis, chosen: Candidate) -> Context:

@@ -31,10 +31,9 @@ from designer.report.design.first_page import by_title, outside_pose
 from designer.report.document import MOST_ROWS
 from designer.report.figures.charts_selection import rank
 from designer.report.templates import Statement, plain_statement
-from designer.selection.candidate import Candidate
+from designer.selection.candidate import MEANINGS, Candidate
 from designer.selection.cases import FEW_SAMPLES
-from designer.selection.efficiency import Allowance
-from designer.selection.objectives import MEANINGS
+from designer.selection.reeving import Allowance
 from designer.selection.result import GradeOutcome, SelectionResult
 from designer.sizing.loop import Iterate, LoopSizing
 from designer.statics.cable_loss import Fate

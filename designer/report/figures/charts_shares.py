@@ -15,7 +15,7 @@ from designer.report import format as fmt
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
 from designer.selection.candidate import Candidate
-from designer.selection.usable import Usable
+from designer.selection.result import SizeCoverage
 from designer.workspace.sweep import Census
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def _unserved(axes: Axes, served: Served) -> None:
     canvas.note(axes, text, (0.0, max(low, 20.0)), (6, -3), xycoords=frame, **style)
 
 
-def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
+def usable_chart(usable: SizeCoverage, chosen: Candidate | None) -> str:
     """Return the share of the workspace over the diameter of the sizes, as SVG."""
     with canvas.drawing():
         figure = canvas.sheet(52.0)
@@ -126,7 +126,7 @@ def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
         return canvas.svg(figure, "usable", "Share of the workspace that each size serves")
 
 
-def _usable_range(usable: Usable, diameters: FloatArray) -> tuple[float, float]:
+def _usable_range(usable: SizeCoverage, diameters: FloatArray) -> tuple[float, float]:
     """From the last size before any serves to a few above the one from which on all serve all."""
     serving = [k for k, size in enumerate(usable.sizes) if size.fraction > 0.0]
     low = diameters[max(serving[0] - 1, 0)] if serving else diameters[0]
@@ -136,7 +136,7 @@ def _usable_range(usable: Usable, diameters: FloatArray) -> tuple[float, float]:
     return low - room, high + room
 
 
-def _name_sizes(axes: Axes, usable: Usable, x: FloatArray, y: FloatArray) -> None:
+def _name_sizes(axes: Axes, usable: SizeCoverage, x: FloatArray, y: FloatArray) -> None:
     """Name the sizes along the curve, as far as there is room."""
     left, right = axes.get_xlim()
     last = -1.0
