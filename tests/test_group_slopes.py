@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from designer.analysis.sensitivities import Sensitivities, group_sensitivities
+from designer.analysis.sensitivity import Sensitivities, group_sensitivities
 from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.cable import Cable, Cables
 from designer.model.prism import Prism

@@ -1,4 +1,4 @@
-r"""What the winches do along a path: lengths, tensions, speeds, power and energy against time.
+r"""What the winches do along a path: lengths, tensions, speeds, power, energy, and bends of ropes.
 
 At each instant the platform is in balance with its inertia (`designer.model.motion`); cables follow
 as if at rest, so that their own oscillations and inertia are left out, as is that of drums and
@@ -12,20 +12,25 @@ to the rope, which it takes up as strained as it is there: without losses of she
 the winches is the rate of the energy of platform and cables, that of the strain of the rope on the
 drums among it. Its motor gives P/η where that is positive, and takes η P where the load drives
 the winch.
+
+A rope runs from the platform over the sheave at its exit point to its winch. Each time an end of a
+bent piece passes a place of the rope it is bent or straightened: half a cycle. Places are counted
+by unstrained length from the platform's end. In which sense sheave and drum bend a rope the study
+does not say, so that reverse bends, which wear it more, are not counted apart; nor are sheaves
+between exit point and winch.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from designer.analysis.path_case import PathCase
-from designer.analysis.requirements import design_loads
-from designer.analysis.rope_bending import CableBending, bending_of, life_requirements
+from designer.arrays import BoolArray, FloatArray
 from designer.documents.plain import Json, csv_text
 from designer.measured.assign import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.model.load_case import Loaded
@@ -34,33 +39,301 @@ from designer.model.requirement import Requirement, State
 from designer.model.robot import Poses
 from designer.model.rope_life import RopeLife
 from designer.model.verdict import Verdict
-from designer.statics.inverse import solve_sagging
+from designer.model.winches import Winches
+from designer.physics.bending import borne_cycles, crossings
+from designer.selection.criteria import rope_diameter_m
+from designer.statics.inverse import Statics, solve_sagging
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
+
+
+@dataclass(frozen=True, eq=False)
+class PathCase:
+    """A load case along the path, in one direction of its loads."""
+
+    loaded: Loaded  #: robot and cables under its loads
+    motion: Motion  #: the instants (n_instants,)
+    statics: Statics  #: their equilibria (n_instants,)
+
+    @property
+    def name(self) -> str:
+        """Of the load case."""
+        return self.loaded.case.name
+
+    @property
+    def is_held(self) -> bool:
+        """Whether every instant is solved: else speeds are not known."""
+        return bool(self.statics.is_solved.all())
+
+    @property
+    def winches(self) -> Winches:
+        """What pulls."""
+        return self.statics.robot.winches
+
+    @cached_property
+    def tension_N(self) -> FloatArray:
+        """At the exit points (n_instants, n_cables) [N]."""
+        return self.statics.exit_tension_N
+
+    @cached_property
+    def speed_m_per_s(self) -> FloatArray:
+        """Of the unstrained lengths, positive paying out (n_instants, n_cables) [m/s]."""
+        return self.motion.speeds_m_per_s(self.statics.length_m)
+
+    @cached_property
+    def drum_tension_N(self) -> FloatArray:
+        """At the drums, behind all sheaves (n_instants, n_cables) [N]."""
+        return self.winches.drum_tension_N(self.tension_N, self.speed_m_per_s > 0.0)
+
+    @cached_property
+    def drum_speed_m_per_s(self) -> FloatArray:
+        """Of the ropes at the drums, strained as they are there (n_instants, n_cables) [m/s]."""
+        strain = self.drum_tension_N / self.statics.axial_stiffness_N
+        return np.asarray((1.0 + strain) * self.speed_m_per_s)
+
+    @cached_property
+    def power_W(self) -> FloatArray:
+        """Of each motor, negative where the load drives it (n_instants, n_cables) [W]."""
+        given = -self.drum_tension_N * self.drum_speed_m_per_s
+        efficiency = self.winches.efficiency
+        return np.where(given > 0.0, given / efficiency, given * efficiency)
+
+    @cached_property
+    def torque_Nm(self) -> FloatArray | None:
+        """Of each motor, rope in the outermost layer (n_instants, n_cables) [N·m].
+
+        None where no drum is given.
+        """
+        winches = self.winches
+        if winches.drum_diameter_m is None:
+            return None
+        rope_m, is_driven = rope_diameter_m(self.loaded.cable), self.speed_m_per_s > 0.0
+        return winches.torque_Nm(self.tension_N, rope_m, is_driven)
+
+    @cached_property
+    def motor_speed_rad_per_s(self) -> FloatArray | None:
+        """Of each motor, rope in the innermost layer (n_instants, n_cables) [rad/s]."""
+        winches = self.winches
+        if winches.drum_diameter_m is None:
+            return None
+        radius = 0.5 * (winches.drum_diameter_m + rope_diameter_m(self.loaded.cable))
+        return np.asarray(self.drum_speed_m_per_s * winches.gear_ratio / radius)
+
+    @cached_property
+    def energy_J(self) -> tuple[FloatArray, FloatArray]:
+        """What each motor draws and what comes back to it, each (n_cables,) [J]."""
+        drawn, back = (np.maximum(sign * self.power_W, 0.0) for sign in (1.0, -1.0))
+        time_s = self.motion.time_s
+        return np.trapezoid(drawn, time_s, axis=0), np.trapezoid(back, time_s, axis=0)
+
+    @cached_property
+    def rms_torque_Nm(self) -> FloatArray | None:
+        """Root mean square over the path of each motor's torque (n_cables,) [N·m]."""
+        if self.torque_Nm is None:
+            return None
+        time_s = self.motion.time_s
+        mean = np.trapezoid(self.torque_Nm**2, time_s, axis=0) / (time_s[-1] - time_s[0])
+        return np.asarray(np.sqrt(mean))
+
+    @cached_property
+    def cable_share(self) -> float:
+        """Largest share of the cables, as far as paid out, in the mass of all that moves."""
+        cables_kg = self.loaded.moving_density_kg_per_m * self.statics.length_m
+        total_kg = np.sum(cables_kg, axis=-1)
+        return float(np.max(total_kg / (total_kg + self.loaded.moving_body.mass_kg)))
+
+    def rows(self) -> Iterator[dict[str, object]]:
+        """Yield what result files hold of each cable."""
+        drawn, back = self.energy_J
+        torque, rms, turning = self.torque_Nm, self.rms_torque_Nm, self.motor_speed_rad_per_s
+        for k in range(self.statics.robot.n_cables):
+            tension, drum_tension = self.tension_N[:, k], self.drum_tension_N[:, k]
+            speed, power = self.drum_speed_m_per_s[:, k], self.power_W[:, k]
+            yield {
+                "load_case": self.name,
+                "cable": k + 1,
+                "tension_max_N": tension.max(),
+                "tension_min_N": tension.min(),
+                "drum_tension_max_N": drum_tension.max(),
+                "drum_tension_min_N": drum_tension.min(),
+                "length_max_m": self.statics.length_m[:, k].max(),
+                "length_min_m": self.statics.length_m[:, k].min(),
+                "paying_out_max_m_per_s": max(speed.max(), 0.0),
+                "hauling_in_max_m_per_s": max(-speed.min(), 0.0),
+                "power_max_W": power.max(),
+                "power_min_W": power.min(),
+                "torque_max_Nm": None if torque is None else torque[:, k].max(),
+                "torque_rms_Nm": None if rms is None else rms[k],
+                "motor_speed_max_rad_per_s": None if turning is None else abs(turning[:, k]).max(),
+                "energy_drawn_J": drawn[k],
+                "energy_returned_J": back[k],
+            }
+
+
+_PLACES = 1000
+
+
+@dataclass(frozen=True, eq=False)
+class CableBending:
+    """What one cable bends in a run along the path."""
+
+    places_m: FloatArray  #: (n_places,) from the platform's end [m]
+    on_sheave: FloatArray  #: (n_places,) bending cycles at the exit point
+    #: (n_places,) bending cycles on the drum; None where the study does not say where it is
+    on_drum: FloatArray | None
+    #: (n_places,) share of the life that one run takes, after Palmgren and Miner; None where it is
+    #: not known
+    damage: FloatArray | None = None
+
+    @property
+    def cycles(self) -> FloatArray:
+        """All of them (n_places,)."""
+        return self.on_sheave if self.on_drum is None else self.on_sheave + self.on_drum
+
+    @cached_property
+    def worst(self) -> int:
+        """The place that wears most, or bends most often."""
+        return int((self.cycles if self.damage is None else self.damage).argmax())
+
+    @property
+    def runs(self) -> float | None:
+        """How many runs it bears until it breaks, in the mean; None where it is not known."""
+        if self.damage is None:
+            return None
+        largest = self.damage[self.worst]
+        return float(1.0 / largest) if largest > 0.0 else np.inf
+
+    def to_dict(self) -> Json:
+        """Return what result files hold."""
+        return {
+            "most_bent_m": self.places_m[self.worst],
+            "cycles_on_sheave": self.on_sheave[self.worst],
+            "cycles_on_drum": None if self.on_drum is None else self.on_drum[self.worst],
+            "bent_length_m": self.bent_m,
+            "runs_to_break": self.runs,
+        }
+
+    @property
+    def bent_m(self) -> float:
+        """How much of the rope bends at all [m]."""
+        step_m = self.places_m[1] - self.places_m[0]
+        return float(step_m * np.count_nonzero(self.cycles))
+
+
+def bending_of(
+    case: PathCase, life: RopeLife | None, sheave_diameter_m: float | None
+) -> tuple[CableBending, ...]:
+    """Return what each cable bends in a run; nothing where an instant is not held.
+
+    ``life`` is None where it gives no constants for these ropes.
+    """
+    if not case.is_held:
+        return ()
+    statics, winches = case.statics, case.winches
+    is_hauled = np.diff(statics.length_m, axis=0) < 0.0
+    step_N = 0.5 * (case.tension_N[1:] + case.tension_N[:-1])
+    # The larger of the tensions on both sides of the sheave at the exit point.
+    sheave_N = step_N / np.where(is_hauled, winches.sheave_efficiency, 1.0)
+    rope_m = float(np.max(rope_diameter_m(case.loaded.cable)))
+    ends_m = statics.free_length_m, statics.length_m
+    bent = [(end_m, sheave_diameter_m, sheave_N) for end_m in ends_m]
+    if winches.positions_m is not None and winches.drum_diameter_m is not None:
+        distance_m = np.linalg.norm(winches.positions_m - statics.robot.exit_points_m, axis=1)
+        unstrained_m = distance_m / (1.0 + case.tension_N / statics.axial_stiffness_N)
+        drum_m = winches.drum_diameter_m + rope_m
+        bent.append(
+            (statics.length_m + unstrained_m, drum_m, winches.drum_tension_N(step_N, ~is_hauled))
+        )
+    cables = []
+    for k in range(statics.robot.n_cables):
+        cable, passes = _bending([end_m[:, k] for end_m, *_ in bent])
+        if life is not None:
+            over = [(over_m, each_N[:, k]) for _, over_m, each_N in bent if over_m is not None]
+            damage = _damage(passes, over, rope_m, cable.bent_m, life)
+            cable = replace(cable, damage=damage)
+        cables.append(cable)
+    return tuple(cables)
+
+
+def _bending(ends_m: Sequence[FloatArray]) -> tuple[CableBending, list[BoolArray]]:
+    """Return it of the ends (n_instants,) of a cable's bent pieces, and what passes them."""
+    low, high = ends_m[0].min(), ends_m[-1].max()
+    places_m = low + (high - low) * (np.arange(_PLACES) + 0.5) / _PLACES
+    passes = [crossings(end_m, places_m) for end_m in ends_m]
+    come, leave, *wound = (0.5 * each.sum(axis=0) for each in passes)
+    return CableBending(places_m, come + leave, wound[0] if wound else None), passes
+
+
+def _damage(
+    passes: Sequence[BoolArray],
+    over: Sequence[tuple[float, FloatArray]],
+    rope_m: float,
+    bent_m: float,
+    life: RopeLife,
+) -> FloatArray:
+    """Return the share of its life (n_places,) that a run takes, half a cycle a passage.
+
+    Of each end ``over`` has the diameter that it bends over, and the tension there in each step.
+    """
+    b, damage = (life.b0, life.b1, life.b2, life.b3), np.zeros(_PLACES)
+    for of_end, (diameter_m, step_N) in zip(passes, over, strict=True):
+        borne = borne_cycles(
+            step_N, rope_m, diameter_m, bent_m, b, life.wire_strength_Pa, life.core_factor
+        )
+        damage += 0.5 * (of_end / borne[:, None]).sum(axis=0)
+    return damage
+
+
+def life_requirements(
+    directions: Sequence[Sequence[tuple[PathCase, Sequence[CableBending]]]],
+    life: RopeLife | None,
+) -> Iterator[Requirement]:
+    """Yield whether the ropes last as long as they shall, in each load case by itself.
+
+    Of each direction of its loads what each cable bends.
+    """
+    if life is None or life.days_min is None or life.runs_per_day is None:
+        return
+    wanted = life.days_min * life.runs_per_day
+    for each in directions:
+        ends = [
+            (bending.runs, number, case)
+            for case, cables in each
+            for number, bending in enumerate(cables, start=1)
+            if bending.runs is not None
+        ]
+        runs, cable, worst = min(ends, key=lambda end: end[0], default=(math.nan, None, each[0][0]))
+        is_held = all(case.is_held for case, _ in each)
+        state = State.HOLDS if is_held and runs >= wanted else State.OPEN
+        yield Requirement(
+            id="rope_life",
+            title="Life of the rope",
+            formula="runs along the path in the days asked for ≤ 1 / Σ (n / N), half a cycle for "
+            "each time that the rope is bent or straightened",
+            source=f"selection.rope_life; Palmgren and Miner, N after Feyrer: {life.source}",
+            state=State.FAILS if runs < wanted else state,
+            load_case=worst.name,
+            demand=wanted,
+            capacity=runs,
+            utilisation=wanted / runs if runs > 0.0 else math.inf if runs == 0.0 else math.nan,
+            cable=cable,
+            loaded=worst.loaded,
+            remark="" if ends or not is_held else "the constants are of steel wire ropes",
+        )
+
 
 _SOURCE = "along workspace.path, at its instants"
 
 
 @dataclass(frozen=True, eq=False)
 class PathAnalysis:
-    """The path with the cables of the design.
+    """The path with the cables of the design."""
 
-    Parameters
-    ----------
-    directions : tuple of tuple of PathCase
-        Each load case in all directions of its loads.
-    life : RopeLife or None
-        What the study says of the bends that a rope bears.
-    sheave_diameter_m : float or None
-        At the exit points [m].
-    is_steel : bool
-        Whether the ropes are known to be of steel wire, as those of the constants are.
-    """
-
-    directions: tuple[tuple[PathCase, ...], ...]
-    life: RopeLife | None = None
-    sheave_diameter_m: float | None = None
+    directions: tuple[tuple[PathCase, ...], ...]  #: each load case in all directions of its loads
+    life: RopeLife | None = None  #: what the study says of the bends that a rope bears
+    sheave_diameter_m: float | None = None  #: at the exit points [m]
+    #: whether the ropes are known to be of steel wire, as those of the constants are
     is_steel: bool = False
 
     @cached_property
@@ -148,22 +421,21 @@ class PathAnalysis:
 def path_of(analysis: Analysis) -> PathAnalysis | None:
     """Return the path with the cables of the design; None without a path, or without cables."""
     motion = analysis.study.robot.platform.motion
-    if motion is None or analysis.qualities is None:
+    if motion is None or not analysis.loads:
         return None
-    every = design_loads(analysis.study, analysis.built, analysis.qualities.cable)
+
+    def along(loaded: Loaded) -> PathCase:
+        statics = solve_sagging(loaded.robot, Poses.at(motion.places), loaded.cable)
+        return PathCase(loaded, motion, statics)
+
     selection = analysis.study.selection
     grades = [rope.grade for rope in analysis.assignment.by_cable]
     return PathAnalysis(
-        tuple(tuple(_along(loaded, motion) for loaded in loads.directions) for loads in every),
+        tuple(tuple(map(along, loads.directions)) for loads in analysis.loads),
         None if selection is None else selection.rope_life,
         None if selection is None else selection.sheave_diameter_m,
         bool(grades) and all(g.material in ("steel", "stainless steel") for g in grades),
     )
-
-
-def _along(loaded: Loaded, motion: Motion) -> PathCase:
-    statics = solve_sagging(loaded.robot, Poses.at(motion.places), loaded.cable)
-    return PathCase(loaded, motion, statics)
 
 
 def path_requirements(analysis: Analysis) -> Iterator[Requirement]:

@@ -57,7 +57,7 @@ def why_unreadable(value: object, newest: int, written_by: str = "") -> tuple[st
     return problem, f"format 1 to {newest}; this file needs cdpr-designer {needed}"
 
 
-def lies_in(part: str, paths: Sequence[str] | None) -> bool:
+def is_requested(part: str, paths: Sequence[str] | None) -> bool:
     """Tell whether a part of a file is one of some paths, or one lies in it; None are all."""
     return paths is None or any(f"{path}.".startswith(f"{part}.") for path in paths)
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.analysis.field import cable_curves_m, chords_m
-from designer.analysis.modes import PlatformModes, modes_at
+from designer.analysis.governing import PlatformModes, modes_at
+from designer.analysis.maps import cable_curves_m, chords_m
 from designer.arrays import FloatArray
 from designer.explore.question import Question, Rope, RopePerCable, cables_words
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable, Cables

@@ -25,7 +25,7 @@ from designer.selection.verify import Verification
 from designer.statics.inverse import Statics, sag_ratio, solve_sagging
 from designer.statics.modes import frequencies_Hz
 from designer.statics.stiffness import largest_displacement_m_per_N
-from designer.workspace.demand import demand_of, in_worst_turn, is_left_out, size_worst
+from designer.workspace.demand import at_worst_orientation, demand_of, is_left_out, size_worst
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import WorkspaceMap, map_workspace
 
@@ -202,7 +202,7 @@ def _worst_with(
     if space.orientations.count == 1:
         return statics
     asked = demand_of(_used(statics, cable).max(axis=-1), statics, workspace.hangs_below)
-    return solve_sagging(robot, Poses.at(in_worst_turn(space, places, asked)), cable)
+    return solve_sagging(robot, Poses.at(at_worst_orientation(space, places, asked)), cable)
 
 
 def _used(statics: Statics, cable: Cable | Cables | None) -> FloatArray:

@@ -315,6 +315,7 @@ class Census:
 class WorkspaceMap(checked.Shown):
     """Sizing over the whole workspace."""
 
+    workspace: Workspace = field(metadata={"json": None})
     census: Census = field(metadata={"json": record})  #: verdict counts
     #: whether every pose of the region has a finite cable: every sample is solved (or left out on
     #: purpose) and the continuous search met no pose without one
@@ -494,6 +495,7 @@ def _summarise(
             diameter = material.diameter_for_tension_m(worst.demand)
             massless = Extreme(worst.place, diameter, worst.demand)
     return WorkspaceMap(
+        workspace=workspace,
         census=gathered.census(),
         is_feasible=sagging is not None,
         sagging=sagging,

@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.path_case import PathCase
+from designer.analysis.path import PathCase
 from designer.model.motion import Motion, limited, timed, unwrapped
 from designer.model.requirement import State
 from designer.report.design.drawings import Drawings

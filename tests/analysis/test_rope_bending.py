@@ -13,7 +13,7 @@ from pairs.options import BASES
 from pairs.table import analysed
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.rope_bending import life_requirements
+from designer.analysis.path import life_requirements
 from designer.model.requirement import State
 
 LIFE: dict[str, Any] = {

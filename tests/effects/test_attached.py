@@ -15,7 +15,7 @@ from pairs.reference import Pose, solve
 from pairs.scenario import lines_of, problem_of
 from pairs.table import analysed, study_in
 
-from designer.analysis.sensitivities import with_density
+from designer.analysis.sensitivity import with_density
 from designer.analysis.uncertainty import Draws
 from designer.model.cable import Attached, Cable
 from designer.model.load_case import Ice, LoadCase, Wind

@@ -10,7 +10,7 @@ from PySide6.QtCore import QLineF, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QHideEvent, QPainter, QPaintEvent, QPen, QShowEvent
 from PySide6.QtWidgets import QComboBox, QDialog, QVBoxLayout, QWidget
 
-from designer.analysis.modes import PlatformModes
+from designer.analysis.governing import PlatformModes
 from designer.arrays import FloatArray
 from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.theme import current

@@ -170,7 +170,7 @@ class Drawings:
         pose = self.analysis.governing
         if pose is None:
             return None
-        statics = pose.alone
+        statics = pose.equilibrium
         return robot_scene(statics, int(statics.cable_tension_N.argmax()), pose.loads)
 
     @scene
@@ -240,7 +240,7 @@ class Drawings:
     @chart
     def served(self) -> str | None:
         """The share of the poses over the diameter."""
-        return None if self.maps is None else served_chart(self.maps.served)
+        return None if self.maps is None else served_chart(self.maps.coverage)
 
     @chart
     def verdicts(self) -> str | None:
