@@ -71,6 +71,31 @@ if TYPE_CHECKING:
     from designer.report.plot import Plots
 
 
+_MOTION_SAMPLES = 64
+"""Poses of a workspace that show whether a motion is free in all of them."""
+_METAL_KG_PER_M3 = 2500.0
+"""Over the nominal circle: of wire ropes 3800 at least, of fibre ropes 1640 at most."""
+_NEEDS_CHOSEN_ONLY = re.compile(
+    r"(name|positive|answer|pose|workspace|load_cases"
+    r"|selection\.chosen(?!\.(continuous_diameter_m|outcome)$))(\.|$)"
+).match
+"""Whether a path of ``result.json`` needs the chosen rope alone."""
+_STAGES = (
+    *("pose", "workspace", "selection", "groups", "needs", "qualities", "requirements", "terms"),
+    *(
+        "path",
+        "reactions",
+        "verification",
+        "sensitivity",
+        "group_slopes",
+        "servable",
+        "uncertainty",
+    ),
+    *("worst_sizing", "outside", "governing", "findings", "modes"),
+)
+"""In the order in which their progress is shown."""
+
+
 class TemporaryFolder:
     """A temporary folder that goes when nothing refers to this any more, or after a killed run."""
 
@@ -93,10 +118,6 @@ class TemporaryFolder:
 def _remove_locked(lock: Any) -> None:
     lock.release()  # Windows removes no file that is open
     shutil.rmtree(Path(lock.lock_file).parent, ignore_errors=True)
-
-
-_FEW_POSES = 64
-"""Of a workspace, that tell whether a motion is free in all of them."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -170,7 +191,7 @@ class Analysis(checked.Shown):
         study, workspace = self.study, self.study.workspace
         if workspace is not None:
             landmarks = workspace.space.landmarks()
-            poses = Poses.at(np.concatenate([landmarks, workspace.thinned(_FEW_POSES)]))
+            poses = Poses.at(np.concatenate([landmarks, workspace.thinned(_MOTION_SAMPLES)]))
         elif study.pose is not None:
             poses = study.pose.flat
         else:
@@ -206,7 +227,12 @@ class Analysis(checked.Shown):
                 study.workspace,
                 built.material(study.material),
                 file=folder and folder / "workspace.nc",
-                attributes=_attributes(study, self.provenance),
+                attributes={
+                    "title": study.name,
+                    "source": f"cdpr-designer {self.provenance.version}",
+                    "config_sha256": study.source.sha256,
+                    "history": f"{self.provenance.created.isoformat(timespec='seconds')} created",
+                },
                 progress=advance,
                 with_massless=self.is_read("workspace.massless") or self.is_read("findings"),
             )
@@ -333,8 +359,8 @@ class Analysis(checked.Shown):
         return second_answers(self)
 
     @cached_property
-    def carries(self) -> SensitivityReport | None:
-        """What carries the choice of a rope for all cables."""
+    def sensitivity(self) -> SensitivityReport | None:
+        """What the choice of a rope for all cables rests on; None without one."""
         return sensitivity_report(self.study, self.selection, self.assignment.rope)
 
     @cached_property
@@ -460,21 +486,6 @@ class Analysis(checked.Shown):
         return self.selection.chosen if self.selection is not None else None
 
 
-_METAL_KG_PER_M3 = 2500.0
-"""Over the nominal circle: of wire ropes 3800 at least, of fibre ropes 1640 at most."""
-_NEEDS_CHOSEN_ONLY = re.compile(
-    r"(name|positive|answer|pose|workspace|load_cases"
-    r"|selection\.chosen(?!\.(continuous_diameter_m|outcome)$))(\.|$)"
-).match
-"""Whether a path of ``result.json`` needs the chosen rope alone."""
-_STAGES = (
-    *("pose", "workspace", "selection", "groups", "needs", "qualities", "requirements", "terms"),
-    *("path", "reactions", "verification", "carries", "group_slopes", "servable", "uncertainty"),
-    *("worst_sizing", "outside", "governing", "findings", "modes"),
-)
-"""In the order in which their progress is shown."""
-
-
 def analyse(
     study: Study,
     catalogue: Catalogue | None = None,
@@ -518,12 +529,3 @@ def finished(analysis: Analysis) -> Analysis:
     for case in analysis.cases:
         _ = case.most_used
     return analysis
-
-
-def _attributes(study: Study, provenance: Provenance) -> dict[str, str]:
-    return {
-        "title": study.name,
-        "source": f"cdpr-designer {provenance.version}",
-        "config_sha256": study.source.sha256,
-        "history": f"{provenance.created.isoformat(timespec='seconds')} created",
-    }

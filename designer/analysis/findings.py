@@ -290,9 +290,9 @@ def _other_policy(analysis: Analysis, survey: WorkspaceMap) -> OtherPolicy | Non
 
 
 def _hanging(analysis: Analysis, survey: WorkspaceMap) -> float:
-    if analysis.qualities is None or not analysis.assignment.is_found:
+    if not analysis.assignment.is_found:
         return survey.census.hangs_below / survey.census.samples
-    robot, cable = analysis.built.robot, analysis.qualities.cable.cable
+    robot, cable = analysis.built.robot, analysis.assignment.cable
     hangs = [
         is_left_out(solve_sagging(robot, Poses.at(positions), cable), "exclude")
         for positions in _with_fewer_samples(robot, survey.workspace).places()

@@ -37,8 +37,8 @@ class CableState:
 
     cable: int  #: its number, from 1
     length_m: float  #: unstrained, from the exit point [m]
-    exit_tension_N: float  #: at either end [N]
-    platform_tension_N: float
+    exit_tension_N: float  #: at the exit point [N]
+    platform_tension_N: float  #: at the platform [N]
     angle_rad: float  #: of its pull on the platform, above the horizontal [rad]
     sag_m: float  #: largest distance from its chord [m]
     stretch_m: float  #: strained less unstrained length, between pulley and platform [m]
@@ -65,7 +65,7 @@ class GoverningPose:
     #: the equilibrium (1,)
     statics: Statics = field(metadata={"json": lambda at: {"at_m": at.poses.position_m[0]}})
     cables: tuple[CableState, ...]  #: those that are left
-    #: what else acts on the platform, world frame (3,) [N]
+    #: name and force of what else acts on the platform, world frame (3,) [N]
     loads: tuple[tuple[str, FloatArray], ...] = field(
         metadata={"json": lambda loads: {"loads": [{"name": n, "force_N": f} for n, f in loads]}}
     )

@@ -27,7 +27,7 @@ from designer.study import Study, declared_settings
 _STARTS, _ROWS_AT_ONCE = 48, 16
 _FULL = 1.0 + 1e-9
 """Utilisation where a cable was made for a pose, with what rounding adds."""
-_MOST_ROWS = 12
+_MAX_NAMED_ROWS = 12
 """Rows that are named one by one."""
 
 
@@ -223,7 +223,7 @@ def named_rows(which: BoolArray, fault: str, what: str = "poses") -> Iterator[st
     """Yield how many rows have a fault, and the first of them by number; nothing where none has."""
     rows = [row for row, is_affected in enumerate(which, start=1) if is_affected]
     if rows:
-        named = ", ".join(map(str, rows[:_MOST_ROWS])) + " …" * (len(rows) > _MOST_ROWS)
+        named = ", ".join(map(str, rows[:_MAX_NAMED_ROWS])) + " …" * (len(rows) > _MAX_NAMED_ROWS)
         yield f"{len(rows)} of {len(which)} {what} {fault}: row {named}"
 
 
@@ -284,7 +284,7 @@ def spooled_of(analysis: Analysis) -> tuple[Spooled, ...]:
 
 def fabricated_cables(analysis: Analysis) -> list[FabricatedCable]:
     """Return each cable of the design; none where no ropes were found or asked for."""
-    if analysis.qualities is None or not analysis.assignment.is_found:
+    if not analysis.assignment.is_found:
         return []
     verification = analysis.assignment.verification
     lengths = zip(verification.longest_m.tolist(), verification.shortest_m.tolist(), strict=True)

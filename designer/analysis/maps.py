@@ -62,8 +62,8 @@ class RegionField:
     """Sizing at positions over any axes; NaN where there is no value."""
 
     position_m: FloatArray  #: (..., 3) positions of the platform [m]
-    diameter_m: FloatArray  #: (...) needed diameter [m] and largest tension [N] with sag
-    tension_N: FloatArray
+    diameter_m: FloatArray  #: (...) needed diameter with sag [m]
+    tension_N: FloatArray  #: (...) largest tension with that diameter [N]
     massless_diameter_m: FloatArray  #: (...) the same with straight weightless cables
     massless_tension_N: FloatArray
     #: (...) largest vertical pull of any cable down on the platform, over the platform's weight;
@@ -188,9 +188,8 @@ class Sag:
     """The largest sag among the cables of a pose."""
 
     cable: int  #: which cable, from 0
-    #: (3,) points on the straight line and on the cable, square to the line [m]
-    on_chord_m: FloatArray
-    on_cable_m: FloatArray
+    on_chord_m: FloatArray  #: (3,) on the straight line [m]
+    on_cable_m: FloatArray  #: (3,) on the cable, square to the line [m]
 
     @property
     def depth_m(self) -> float:
@@ -270,7 +269,12 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     centre = region.centre_m
     if not Prism(hull, (-1.0, 1.0)).contains(np.array([*centre, 0.0])):
         return None
-    azimuth = _azimuth_rad(hull, centre, focus_m)
+    offset = focus_m[:2] - centre
+    if np.hypot(*offset) > 1e-6 * np.ptp(hull, axis=0).max():
+        azimuth = float(np.arctan2(offset[1], offset[0]))
+    else:  # the focus is in the centre: to the nearest edge
+        around = np.linspace(-np.pi, np.pi, 361)
+        azimuth = float(around[np.argmin([polygon.reach_m(hull, centre, a) for a in around])])
     reach = polygon.reach_m(hull, centre, azimuth)
     ray = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
 
@@ -284,22 +288,13 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     return EdgeProfile(
         distance_m=distance,
         field=field,
-        focus_distance_m=reach - float(np.hypot(*(focus_m[:2] - centre))),
+        focus_distance_m=reach - float(np.hypot(*offset)),
         region_distance_m=None if inside is None else reach - inside,
         limit_distance_m=first_failure_m(at, distance, field, lambda stretch: stretch.is_solved),
         straight_distance_m=first_failure_m(
             at, distance, field, lambda stretch: stretch.is_held_straight
         ),
     )
-
-
-def _azimuth_rad(hull: FloatArray, centre: FloatArray, focus_m: FloatArray) -> float:
-    """Direction to the focus, or to the nearest edge where the focus is in the centre."""
-    offset = focus_m[:2] - centre
-    if np.hypot(*offset) > 1e-6 * np.ptp(hull, axis=0).max():
-        return float(np.arctan2(offset[1], offset[0]))
-    around = np.linspace(-np.pi, np.pi, 361)
-    return float(around[np.argmin([polygon.reach_m(hull, centre, a) for a in around])])
 
 
 def first_failure_m(
@@ -341,9 +336,8 @@ class Focus:
 class CoverageCurve:
     """What share of the workspace a cable of a given diameter serves."""
 
-    #: (n,) diameters, ascending [m], and the share of all poses that need no more
-    diameter_m: FloatArray
-    share: FloatArray
+    diameter_m: FloatArray  #: (n,) ascending [m]
+    share: FloatArray  #: (n,) of all poses that need no more
     massless_diameter_m: FloatArray  #: (n,) the same if sag is ignored
     massless_share: FloatArray
     unserved: float  #: share of the poses that no diameter serves

@@ -47,6 +47,9 @@ from designer.statics.inverse import Statics, solve_sagging
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
 
+_PLACES = 1000
+"""Of a rope whose bends are counted."""
+
 
 @dataclass(frozen=True, eq=False)
 class PathCase:
@@ -100,23 +103,20 @@ class PathCase:
         return np.where(given > 0.0, given / efficiency, given * efficiency)
 
     @cached_property
-    def torque_Nm(self) -> FloatArray | None:
-        """Of each motor, rope in the outermost layer (n_instants, n_cables) [N·m].
-
-        None where no drum is given.
-        """
+    def torque_Nm(self) -> FloatArray:
+        """Of each motor, rope in the outermost layer (n_instants, n_cables) [N·m]; NaN: no drum."""
         winches = self.winches
         if winches.drum_diameter_m is None:
-            return None
+            return np.full_like(self.tension_N, np.nan)
         rope_m, is_driven = rope_diameter_m(self.loaded.cable), self.speed_m_per_s > 0.0
         return winches.torque_Nm(self.tension_N, rope_m, is_driven)
 
     @cached_property
-    def motor_speed_rad_per_s(self) -> FloatArray | None:
-        """Of each motor, rope in the innermost layer (n_instants, n_cables) [rad/s]."""
+    def motor_speed_rad_per_s(self) -> FloatArray:
+        """Of each motor, rope in the innermost layer (n_instants, n_cables) [rad/s]; as above."""
         winches = self.winches
         if winches.drum_diameter_m is None:
-            return None
+            return np.full_like(self.tension_N, np.nan)
         radius = 0.5 * (winches.drum_diameter_m + rope_diameter_m(self.loaded.cable))
         return np.asarray(self.drum_speed_m_per_s * winches.gear_ratio / radius)
 
@@ -128,10 +128,8 @@ class PathCase:
         return np.trapezoid(drawn, time_s, axis=0), np.trapezoid(back, time_s, axis=0)
 
     @cached_property
-    def rms_torque_Nm(self) -> FloatArray | None:
+    def rms_torque_Nm(self) -> FloatArray:
         """Root mean square over the path of each motor's torque (n_cables,) [N·m]."""
-        if self.torque_Nm is None:
-            return None
         time_s = self.motion.time_s
         mean = np.trapezoid(self.torque_Nm**2, time_s, axis=0) / (time_s[-1] - time_s[0])
         return np.asarray(np.sqrt(mean))
@@ -146,7 +144,6 @@ class PathCase:
     def rows(self) -> Iterator[dict[str, object]]:
         """Yield what result files hold of each cable."""
         drawn, back = self.energy_J
-        torque, rms, turning = self.torque_Nm, self.rms_torque_Nm, self.motor_speed_rad_per_s
         for k in range(self.statics.robot.n_cables):
             tension, drum_tension = self.tension_N[:, k], self.drum_tension_N[:, k]
             speed, power = self.drum_speed_m_per_s[:, k], self.power_W[:, k]
@@ -163,15 +160,12 @@ class PathCase:
                 "hauling_in_max_m_per_s": max(-speed.min(), 0.0),
                 "power_max_W": power.max(),
                 "power_min_W": power.min(),
-                "torque_max_Nm": None if torque is None else torque[:, k].max(),
-                "torque_rms_Nm": None if rms is None else rms[k],
-                "motor_speed_max_rad_per_s": None if turning is None else abs(turning[:, k]).max(),
+                "torque_max_Nm": self.torque_Nm[:, k].max(),
+                "torque_rms_Nm": self.rms_torque_Nm[k],
+                "motor_speed_max_rad_per_s": abs(self.motor_speed_rad_per_s[:, k]).max(),
                 "energy_drawn_J": drawn[k],
                 "energy_returned_J": back[k],
             }
-
-
-_PLACES = 1000
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,39 +224,33 @@ def bending_of(
     """
     if not case.is_held:
         return ()
-    statics, winches = case.statics, case.winches
+    statics, winches, cables = case.statics, case.winches, []
     is_hauled = np.diff(statics.length_m, axis=0) < 0.0
     step_N = 0.5 * (case.tension_N[1:] + case.tension_N[:-1])
     # The larger of the tensions on both sides of the sheave at the exit point.
     sheave_N = step_N / np.where(is_hauled, winches.sheave_efficiency, 1.0)
     rope_m = float(np.max(rope_diameter_m(case.loaded.cable)))
     ends_m = statics.free_length_m, statics.length_m
-    bent = [(end_m, sheave_diameter_m, sheave_N) for end_m in ends_m]
+    # Of each end of a bent piece where it is, over which diameter it bends, and with what tension.
+    bends = [(end_m, sheave_diameter_m, sheave_N) for end_m in ends_m]
     if winches.positions_m is not None and winches.drum_diameter_m is not None:
         distance_m = np.linalg.norm(winches.positions_m - statics.robot.exit_points_m, axis=1)
         unstrained_m = distance_m / (1.0 + case.tension_N / statics.axial_stiffness_N)
         drum_m = winches.drum_diameter_m + rope_m
-        bent.append(
-            (statics.length_m + unstrained_m, drum_m, winches.drum_tension_N(step_N, ~is_hauled))
-        )
-    cables = []
+        drum_N = winches.drum_tension_N(step_N, ~is_hauled)
+        bends.append((statics.length_m + unstrained_m, drum_m, drum_N))
     for k in range(statics.robot.n_cables):
-        cable, passes = _bending([end_m[:, k] for end_m, *_ in bent])
+        low, high = bends[0][0][:, k].min(), bends[-1][0][:, k].max()
+        places_m = low + (high - low) * (np.arange(_PLACES) + 0.5) / _PLACES
+        passes = [crossings(end_m[:, k], places_m) for end_m, *_ in bends]
+        onto, off, *wound = (0.5 * mask.sum(axis=0) for mask in passes)
+        cable = CableBending(places_m, onto + off, wound[0] if wound else None)
         if life is not None:
-            over = [(over_m, each_N[:, k]) for _, over_m, each_N in bent if over_m is not None]
+            over = [(bend_m, bend_N[:, k]) for _, bend_m, bend_N in bends if bend_m is not None]
             damage = _damage(passes, over, rope_m, cable.bent_m, life)
             cable = replace(cable, damage=damage)
         cables.append(cable)
     return tuple(cables)
-
-
-def _bending(ends_m: Sequence[FloatArray]) -> tuple[CableBending, list[BoolArray]]:
-    """Return it of the ends (n_instants,) of a cable's bent pieces, and what passes them."""
-    low, high = ends_m[0].min(), ends_m[-1].max()
-    places_m = low + (high - low) * (np.arange(_PLACES) + 0.5) / _PLACES
-    passes = [crossings(end_m, places_m) for end_m in ends_m]
-    come, leave, *wound = (0.5 * each.sum(axis=0) for each in passes)
-    return CableBending(places_m, come + leave, wound[0] if wound else None), passes
 
 
 def _damage(
@@ -295,35 +283,34 @@ def life_requirements(
     """
     if life is None or life.days_min is None or life.runs_per_day is None:
         return
-    wanted = life.days_min * life.runs_per_day
-    for each in directions:
+    demand = life.days_min * life.runs_per_day
+    for of_case in directions:
         ends = [
             (bending.runs, number, case)
-            for case, cables in each
+            for case, cables in of_case
             for number, bending in enumerate(cables, start=1)
             if bending.runs is not None
         ]
-        runs, cable, worst = min(ends, key=lambda end: end[0], default=(math.nan, None, each[0][0]))
-        is_held = all(case.is_held for case, _ in each)
-        state = State.HOLDS if is_held and runs >= wanted else State.OPEN
+        runs, cable, worst = min(
+            ends, key=lambda end: end[0], default=(math.nan, None, of_case[0][0])
+        )
+        is_held = all(case.is_held for case, _ in of_case)
+        state = State.HOLDS if is_held and runs >= demand else State.OPEN
         yield Requirement(
             id="rope_life",
             title="Life of the rope",
             formula="runs along the path in the days asked for ≤ 1 / Σ (n / N), half a cycle for "
             "each time that the rope is bent or straightened",
             source=f"selection.rope_life; Palmgren and Miner, N after Feyrer: {life.source}",
-            state=State.FAILS if runs < wanted else state,
+            state=State.FAILS if runs < demand else state,
             load_case=worst.name,
-            demand=wanted,
+            demand=demand,
             capacity=runs,
-            utilisation=wanted / runs if runs > 0.0 else math.inf if runs == 0.0 else math.nan,
+            utilisation=demand / runs if runs > 0.0 else math.inf if runs == 0.0 else math.nan,
             cable=cable,
             loaded=worst.loaded,
             remark="" if ends or not is_held else "the constants are of steel wire ropes",
         )
-
-
-_SOURCE = "along workspace.path, at its instants"
 
 
 @dataclass(frozen=True, eq=False)
@@ -340,8 +327,8 @@ class PathAnalysis:
     def cases(self) -> tuple[PathCase, ...]:
         """Each load case, in the direction in which its largest tension is largest."""
         return tuple(
-            max(each, key=lambda case: np.nan_to_num(case.tension_N).max())
-            for each in self.directions
+            max(directions, key=lambda case: np.nan_to_num(case.tension_N).max())
+            for directions in self.directions
         )
 
     @property
@@ -362,8 +349,14 @@ class PathAnalysis:
     @cached_property
     def winches(self) -> list[Json]:
         """Each winch in each load case: the extremes over all directions of its loads."""
+
+        def extreme(name: str, values: Sequence[Any]) -> Any:
+            if isinstance(values[0], str):
+                return values[0]
+            return np.min(values) if "_min_" in name else np.max(values)
+
         return [
-            {name: _extreme(name, [row[name] for row in of_winch]) for name in of_winch[0]}
+            {name: extreme(name, [row[name] for row in of_winch]) for name in of_winch[0]}
             for directions in self.directions
             for of_winch in zip(*(case.rows() for case in directions), strict=True)
         ]
@@ -372,8 +365,8 @@ class PathAnalysis:
     def of_largest_energy(self) -> tuple[PathCase, ...]:
         """Each load case, in the direction in which its motors draw the largest energy together."""
         return tuple(
-            max(each, key=lambda case: np.nan_to_num(case.energy_J[0]).sum())
-            for each in self.directions
+            max(directions, key=lambda case: np.nan_to_num(case.energy_J[0]).sum())
+            for directions in self.directions
         )
 
     @cached_property
@@ -381,14 +374,14 @@ class PathAnalysis:
         """Each load case in all directions, with what each cable bends in one run."""
         life = self.life if self.is_steel else None
         return tuple(
-            tuple((case, bending_of(case, life, self.sheave_diameter_m)) for case in each)
-            for each in self.directions
+            tuple((case, bending_of(case, life, self.sheave_diameter_m)) for case in directions)
+            for directions in self.directions
         )
 
     @property
     def bending(self) -> tuple[tuple[CableBending, ...], ...]:
         """Of each of the cases what each cable bends; none of a case that is not held."""
-        of_case = {case: cables for each in self.bent for case, cables in each}
+        of_case = {case: cables for directions in self.bent for case, cables in directions}
         return tuple(of_case[case] for case in self.cases)
 
     def to_dict(self) -> Json:
@@ -440,11 +433,11 @@ def path_of(analysis: Analysis) -> PathAnalysis | None:
 
 def path_requirements(analysis: Analysis) -> Iterator[Requirement]:
     """Yield what winches, motors and ropes of a study have to do along its path."""
-    path = analysis.path
-    if path is not None:
-        yield from life_requirements(path.bent, path.life)
-    winches = analysis.built.robot.winches
-    asked = (
+    path, winches = analysis.path, analysis.built.robot.winches
+    if path is None:
+        return
+    yield from life_requirements(path.bent, path.life)
+    limits = (
         ("winch_speed", "Winch speed", "v (1 + T/EA), v the rate of the unstrained length",
          "m/s", winches.speed_max_m_per_s, "speed_max", "drum_speed_m_per_s"),
         ("motor_speed", "Motor speed", "v (1 + T/EA) i / ((D + d) / 2), rope in the lowest layer",
@@ -452,10 +445,10 @@ def path_requirements(analysis: Analysis) -> Iterator[Requirement]:
         ("motor_power", "Motor power", "P = T v (1 + T/EA) at the drum; P / η hauling in, η P else",
          "W", winches.motor_power_W, "motor.power", "power_W"),
     )  # fmt: skip
-    for id_, title, formula, unit, limit, field, quantity in asked:
-        if limit is None or analysis.path is None:
+    for id_, title, formula, unit, limit, field, quantity in limits:
+        if limit is None:
             continue
-        for directions in analysis.path.directions:
+        for directions in path.directions:
             sizes = [np.abs(getattr(case, quantity)) for case in directions]
             worst = int(np.argmax([np.nan_to_num(size).max() for size in sizes]))
             size, case = sizes[worst], directions[worst]
@@ -472,7 +465,7 @@ def path_requirements(analysis: Analysis) -> Iterator[Requirement]:
                 id=id_,
                 title=title,
                 formula=f"{formula} ≤ that of the study",
-                source=f"robot.winches.{field}; {_SOURCE}",
+                source=f"robot.winches.{field}; along workspace.path, at its instants",
                 state=state,
                 load_case=case.name,
                 demand=demand,
@@ -484,12 +477,6 @@ def path_requirements(analysis: Analysis) -> Iterator[Requirement]:
                 loaded=case.loaded,
                 remark=remark,
             )
-
-
-def _extreme(name: str, values: Sequence[Any]) -> Any:
-    if isinstance(values[0], str) or values[0] is None:
-        return values[0]
-    return np.min(values) if "_min_" in name else np.max(values)
 
 
 def _table(cases: Sequence[PathCase]) -> Iterator[list[str]]:
@@ -510,6 +497,6 @@ def _table(cases: Sequence[PathCase]) -> Iterator[list[str]]:
             case.statics.verdict,
             strict=True,
         )
-        for where, row, verdict in rows:
-            cells = ["" if np.isnan(x) else f"{x:.10g}" for x in (*where, *row)]
+        for instant, row, verdict in rows:
+            cells = ["" if np.isnan(x) else f"{x:.10g}" for x in (*instant, *row)]
             yield [case.name, *cells, Verdict(int(verdict)).label]

@@ -1,4 +1,4 @@
-"""Where the numbers of an analysis come from."""
+"""Where the numbers of a report come from, also of reports that need no analysis."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Provenance:
     """Where the numbers come from."""
 
     version: str  #: of this program
-    libraries: tuple[tuple[str, str], ...]  #: what computed and drew them
+    libraries: tuple[tuple[str, str], ...]  #: name and version of what computed and drew them
     system: str  #: operating system and Python
     created: datetime  #: when the analysis was started
 

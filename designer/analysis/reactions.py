@@ -29,12 +29,12 @@ class Reaction:
     """What a cable does to the support of its exit point, where one size of it is largest."""
 
     mast: int  #: the exit point, from 1
-    load_case: str  #: in which load case, and one of `EXTREMES`
-    extreme: str
+    load_case: str  #: in which load case
+    extreme: str  #: one of `EXTREMES`
     size_N: float  #: that size [N]
     force_N: FloatArray  #: (3,) all known branches of the cable together, world frame [N]
-    #: (3,) each branch; None where nothing tells where the winch stands [N]
-    platform_branch_N: FloatArray
+    platform_branch_N: FloatArray  #: (3,) of the branch to the platform [N]
+    #: (3,) of the branch to the winch; None where nothing tells where that stands [N]
     winch_branch_N: FloatArray | None
     exit_point_m: FloatArray  #: (3,) where the cable leaves the base, world frame [m]
     #: in which direction of wind and inertia force, or without which cable

@@ -11,13 +11,11 @@ import numpy as np
 
 from designer import __version__
 from designer.analysis.analyse import Analysis
-from designer.analysis.governing import PlatformModes
 from designer.analysis.lengths import spooled_of
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.sensitivity import sensitivity_dict
 from designer.arrays import FloatArray
 from designer.documents.plain import RESULT_FORMAT, Json, csv_text, is_requested, plain, record
-from designer.model.price_list import PriceList
 from designer.model.space import named_place, turn_of
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
@@ -31,8 +29,8 @@ from designer.study import Study
 from designer.workspace.clearance import Interference
 
 _OF_THE_CHOICE = ("stiffness", "interference", "hanging")
-"""Of ``workspace``: told of the chosen rope, so that it has to be chosen."""
-_OF_CARRIES = ("sensitivities", "reserve", "sizes_beside", "first_failures")
+"""Of ``workspace``: of the chosen rope, so that it has to be chosen."""
+_OF_SENSITIVITY = ("sensitivities", "reserve", "sizes_beside", "first_failures")
 
 
 def result_dict(analysis: Analysis) -> Json:
@@ -41,7 +39,10 @@ def result_dict(analysis: Analysis) -> Json:
     What changes no answer and takes its time is computed where it is read, and empty elsewhere.
     """
     study, selection, is_read = analysis.study, analysis.selection, analysis.is_read
-    carries = any(map(is_read, _OF_CARRIES))
+    with_sensitivity = any(map(is_read, _OF_SENSITIVITY))
+    modes = analysis.modes if is_read("modes") or is_read("modes_at") else None
+    path = analysis.path if is_read("path") else None
+    uncertainty = analysis.uncertainty if is_read("uncertainty") else None
     return plain(
         {
             "format": RESULT_FORMAT,
@@ -54,15 +55,13 @@ def result_dict(analysis: Analysis) -> Json:
             "selection": selection_dict(selection, analysis.groups, analysis.own_material),
             **load_cases_dict(analysis),
             **sensitivity_dict(
-                analysis.carries if carries else None, analysis.group_slopes if carries else ()
+                analysis.sensitivity if with_sensitivity else None,
+                analysis.group_slopes if with_sensitivity else (),
             ),
-            "uncertainty": (
-                analysis.uncertainty.to_dict()
-                if is_read("uncertainty") and analysis.uncertainty is not None
-                else None
-            ),
-            **(_modes(analysis.modes if is_read("modes") or is_read("modes_at") else None)),
-            "path": _path(analysis),
+            "uncertainty": uncertainty and uncertainty.to_dict(),
+            "modes": modes.modes if modes else [],
+            "modes_at": modes,
+            "path": path and path.to_dict(),
             "reactions": analysis.reactions if is_read("reactions") else [],
             "winches": spooled_of(analysis) if is_read("winches") else [],
             "findings": analysis.findings if is_read("findings") else None,
@@ -123,24 +122,20 @@ def _answer(analysis: Analysis) -> Json:
         {"id": requirement.id, "load_case": requirement.load_case, "state": requirement.state.value}
         for requirement in analysis.unmet
     ]
+    assignment = analysis.assignment
+    products = [  # one rope for all has no name
+        {"name": group.name or None, "cables": group.cables, **rope.ids}
+        for group, rope in zip(assignment.groups, assignment.ropes, strict=True)
+    ]
     return {
         "verdict": analysis.answer.value,
         "covers": analysis.terms.covers,
         "not_asked": analysis.terms.not_asked,
         "subject_to": analysis.terms.subject_to,
         "reasons": reasons,
-        **_products(analysis),
+        "products": products,
+        "total_mass_kg": assignment.total_mass_kg,
     }
-
-
-def _products(analysis: Analysis) -> Json:
-    """Return what to put on each cable, by groups of them: one rope for all has no name."""
-    assignment = analysis.assignment
-    products = [
-        {"name": group.name or None, "cables": group.cables, **rope.ids}
-        for group, rope in zip(assignment.groups, assignment.ropes, strict=True)
-    ]
-    return {"products": products, "total_mass_kg": assignment.total_mass_kg}
 
 
 def _pose(study: Study, pose: PoseAnalysis | None, with_rest: bool) -> Json | None:
@@ -148,7 +143,7 @@ def _pose(study: Study, pose: PoseAnalysis | None, with_rest: bool) -> Json | No
         return None
     statics, sizing = pose.sizing.statics, pose.sizing
     diameter, is_solved = sizing.diameter_m, bool(statics.is_solved)
-    how_surely = "proved" if sizing.is_thinnest else "found"  # that no thinner cable holds it
+    evidence = "proved" if sizing.is_thinnest else "found"  # that no thinner cable holds it
     return {
         "position_m": statics.poses.position_m,
         "in_workspace": None if study.workspace is None else not study.pose_outside,
@@ -165,7 +160,7 @@ def _pose(study: Study, pose: PoseAnalysis | None, with_rest: bool) -> Json | No
             "closure_residual_m": statics.closure_residual_m().max(),
             "equilibrium_residual_N": abs(statics.equilibrium_residual_N()).max(),
             "status": Verdict(int(statics.verdict)).label,
-            "thinnest": how_surely if is_solved else None,
+            "thinnest": evidence if is_solved else None,
         },
         "massless": {
             "diameter_m": sizing.massless_diameter_m,
@@ -187,12 +182,18 @@ def _pose(study: Study, pose: PoseAnalysis | None, with_rest: bool) -> Json | No
 def _workspace(analysis: Analysis) -> Json | None:
     if analysis.workspace is None:
         return None
+    qualities: Json = dict.fromkeys(_OF_THE_CHOICE)  # None where they were not looked at
+    for name in _OF_THE_CHOICE:
+        if analysis.is_read(f"workspace.{name}") and analysis.qualities is not None:
+            qualities[name] = getattr(analysis.qualities, name)
+    survey = qualities["interference"]
     return {
         **record(analysis.workspace),
         "orientations": _orientations(analysis.study),
         "section_m": analysis.section_m,
         "servable": analysis.servable if analysis.is_read("workspace.servable") else None,
-        **_qualities(analysis),
+        **qualities,
+        "interference": survey and _interference(survey),
     }
 
 
@@ -208,26 +209,6 @@ def _orientations(study: Study) -> Json | None:
         "law": None if law is None else law.words,
         "table": None if law is None or law.rows is None else np.hstack(law.rows),
     }
-
-
-def _qualities(analysis: Analysis) -> Json:
-    """Return stiffness and clearances; None where they were not looked at."""
-    of_the_choice = dict.fromkeys(_OF_THE_CHOICE)
-    for name in _OF_THE_CHOICE:
-        if analysis.is_read(f"workspace.{name}") and analysis.qualities is not None:
-            of_the_choice[name] = getattr(analysis.qualities, name)
-    interference = of_the_choice["interference"]
-    return of_the_choice | {"interference": interference and _interference(interference)}
-
-
-def _modes(modes: PlatformModes | None) -> Json:
-    return {"modes": [] if modes is None else modes.modes, "modes_at": modes}
-
-
-def _path(analysis: Analysis) -> Json | None:
-    if not analysis.is_read("path") or analysis.path is None:
-        return None
-    return analysis.path.to_dict()
 
 
 def _interference(survey: Interference) -> Json:
@@ -309,11 +290,18 @@ def selection_dict(
         for c in o.candidates
     }
     chosen, usable, untrusted = selection.chosen, selection.usable, selection.untrusted
+    prices = selection.price_list
     return {
         "objectives": selection.objectives,
         "currency": selection.currency,
         "price_estimate": selection.price_estimate,
-        "price_list": selection.price_list and _prices(selection.price_list),
+        "price_list": prices
+        and {
+            "file": prices.name,
+            "currency": prices.currency,
+            "dates": prices.dates,
+            "prices": len(prices.offers),
+        },
         "chosen": None if chosen is None else rows[chosen],
         "reason": selection.reason,
         "best_of_materials": [
@@ -334,15 +322,6 @@ def selection_dict(
         else [],
         "groups": [] if choice is None else list(_groups(choice.chosen)),
         "group_choice": choice,
-    }
-
-
-def _prices(price_list: PriceList) -> Json:
-    return {
-        "file": price_list.name,
-        "currency": price_list.currency,
-        "dates": price_list.dates,
-        "prices": len(price_list.offers),
     }
 
 

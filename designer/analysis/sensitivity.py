@@ -572,7 +572,7 @@ class SensitivityReport:
 
     governing: CaseResult  #: the load case that governs
     sensitivities: Sensitivities  #: at its worst pose
-    #: how much more there could be of each, in all load cases; None where no end was found
+    #: of the payload, in all load cases; None where no end was found, as the next
     payload: Reserve | None
     region: Reserve | None
     #: the next thinner size of the grade, the chosen one, the next thicker one, where there are

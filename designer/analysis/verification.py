@@ -32,8 +32,8 @@ class SecondAnswer:
     method: str  #: what found the other one
     quantity: str  #: what it is, and at which pose
     unit: str  #: of both, SI
-    ours: float  #: NaN where the other method found nothing, see ``remark``
-    theirs: float
+    ours: float
+    theirs: float  #: NaN where the other method found nothing, see ``remark``
     tolerance: float = field(metadata={"json": None})  #: difference up to which the two agree
     remark: str = ""  #: why there is nothing to compare; empty where there is
     #: whether theirs may be larger: a thicker cable that also holds refutes no thinner one

@@ -22,7 +22,7 @@ from designer.model.workspace import Workspace
 from designer.progress import Reporter
 from designer.selection.cases import CaseResult, Cases, governing, searched_all
 from designer.study import Study
-from designer.workspace.section import FIRST_TRIED_M, thinnest_that
+from designer.workspace.section import FIRST_TRIED_M, min_diameter_where
 
 _STILL = 1e-9
 """Relative growth of the diameter that is rounding: the search is at its end."""
@@ -114,4 +114,4 @@ def _thinnest(worst: CaseResult, cable: Callable[[float], Cable]) -> float:
         loaded = worst.loaded.on(robot, cable(diameter_m))
         return worst.tension_N(loaded) <= loaded.cable.allowable_tension_N
 
-    return thinnest_that(serves)
+    return min_diameter_where(serves)

@@ -273,8 +273,6 @@ def test_winches_and_motors_against_what_they_do(tmp_path: Path) -> None:
     assert asked["motor_power"].demand == pytest.approx(pulling.max(), rel=5e-3)
     assert asked["motor_power"].holds
     torque = case.tension_N * (0.15 + 1.5 * d) / 20.0
-    assert case.torque_Nm is not None
-    assert case.rms_torque_Nm is not None
     assert case.torque_Nm == pytest.approx(np.where(speed > 0.0, 0.8 * torque, torque / 0.8))
     mean = np.trapezoid(case.torque_Nm**2, case.motion.time_s, axis=0) / 8.0
     assert case.rms_torque_Nm == pytest.approx(np.sqrt(mean))

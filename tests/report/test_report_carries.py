@@ -51,8 +51,8 @@ def windy(solve: Callable[[str], Analysis]) -> Analysis:
 
 
 def of(found: Analysis) -> SensitivityReport:
-    assert found.carries is not None
-    return found.carries
+    assert found.sensitivity is not None
+    return found.sensitivity
 
 
 @pytest.mark.parametrize("name", ["found", "windy"])

@@ -27,7 +27,7 @@ from designer.model.robot import Robot
 from designer.model.space import Orientations
 from designer.model.turning import EachPose, Toward, TurnTable
 from designer.model.workspace import Workspace
-from designer.workspace.best_turns import BestTurns
+from designer.workspace.best_orientations import BestOrientations
 
 Listed = tuple[Region, Orientations]
 
@@ -97,7 +97,7 @@ class _Places:
         single, free = section.orientation, section.orientation_free
         if free is not None:
             ends = frozen_array(free.bounds_rad)
-            law = BestTurns(self.robot, self.material, region, ends, section.hangs_below)
+            law = BestOrientations(self.robot, self.material, region, ends, section.hangs_below)
             return Orientations(law=law)
         if single is not None and single.toward is not None:
             return Orientations(law=Toward(frozen_array(single.toward), frozen_array(single.axis)))

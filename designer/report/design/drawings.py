@@ -131,7 +131,7 @@ class Drawings:
     @chart
     def sensitivities(self) -> str | None:
         """What changes the utilisation, as bars."""
-        carries = self.analysis.carries
+        carries = self.analysis.sensitivity
         if carries is None:
             return None
         shares, moves = shares_of_inputs(carries), slopes_of_moves(carries)

@@ -121,7 +121,7 @@ def _alike(forces_N: Iterable[float]) -> Callable[..., tuple[str, ...]]:
 
 def sensitivities(analysis: Analysis) -> Mapping[str, object] | None:
     """What carries the result; None where no rope is chosen."""
-    carries, groups = analysis.carries, analysis.group_slopes
+    carries, groups = analysis.sensitivity, analysis.group_slopes
     if carries is not None:
         return _of_one_rope(carries)
     return _of_groups(groups) if groups else None
