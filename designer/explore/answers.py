@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.field import cable_curves_m, chords_m
-from designer.analysis.modes import PlatformModes, modes_at
+from designer.analysis.governing import PlatformModes, modes_at
+from designer.analysis.maps import cable_curves_m, chords_m
 from designer.analysis.requirements import Terms
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.explore.fields import Field
@@ -52,7 +52,7 @@ from designer.statics.inverse import (
 from designer.statics.modes import frequencies_Hz
 from designer.statics.rest import resting_places
 from designer.statics.stiffness import largest_displacement_m_per_N
-from designer.workspace.demand import demand_of, in_worst_turn, is_left_out, size_worst
+from designer.workspace.demand import at_worst_orientation, demand_of, is_left_out, size_worst
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import WorkspaceMap, map_workspace
 
@@ -370,7 +370,7 @@ def _solve_worst_orientation(
     if space.orientations.count == 1:
         return statics
     demand = demand_of(_utilisation(statics, cable).max(axis=-1), statics, workspace.hangs_below)
-    return solve_sagging(robot, Poses.at(in_worst_turn(space, places, demand)), cable)
+    return solve_sagging(robot, Poses.at(at_worst_orientation(space, places, demand)), cable)
 
 
 def _utilisation(statics: Statics, cable: Cable | Cables | None) -> FloatArray:

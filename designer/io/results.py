@@ -13,7 +13,7 @@ import numpy as np
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.reactions import reactions_csv
-from designer.analysis.selection_json import candidates_csv
+from designer.analysis.result_json import candidates_csv
 from designer.diagnosis.design import declared_by, declared_of_session, spreads_of
 from designer.diagnosis.result import Diagnosis, effects_table
 from designer.documents import document

@@ -15,8 +15,7 @@ import numpy as np
 from markupsafe import Markup
 
 from designer.analysis.comparison import ComparisonLine
-from designer.analysis.edge import EdgeProfile
-from designer.analysis.maps import Served, WorkspaceMaps
+from designer.analysis.maps import CoverageCurve, EdgeProfile, WorkspaceMaps
 from designer.arrays import FloatArray
 from designer.model.region import Region
 from designer.model.space import Orientations
@@ -353,7 +352,7 @@ def ends_of_holding(profile: EdgeProfile) -> tuple[float | None, float | None]:
     return last, straight
 
 
-def diameter_of_nine_tenths_m(served: Served) -> float | None:
+def diameter_of_nine_tenths_m(served: CoverageCurve) -> float | None:
     """Return the diameter that serves nine poses of ten [m]; None where none does."""
     most = np.flatnonzero(served.share >= 0.9)
     return float(served.diameter_m[most[0]]) if len(most) else None

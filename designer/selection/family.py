@@ -32,7 +32,13 @@ from designer.sizing.newton import size_poses
 from designer.study import Study
 from designer.workspace.demand import diameter_demand
 from designer.workspace.refine import Worst, worst_over_samples
-from designer.workspace.section import FIRST_TRIED_M, FamilyAt, in_lockstep, thinnest, thinnest_that
+from designer.workspace.section import (
+    FIRST_TRIED_M,
+    FamilyAt,
+    in_lockstep,
+    min_diameter_where,
+    thinnest,
+)
 
 _MAX_ITERATIONS = 20
 """Of a fixed point, so that it ends: the need falls steeply, so a few reach it."""
@@ -203,7 +209,7 @@ def family_need(
             loaded = worst.loaded.on(worst.loaded.bare[0], cable(diameter_m))
             return worst.tension_N(loaded) <= loaded.cable.allowable_tension_N
 
-        return thinnest_that(serves)
+        return min_diameter_where(serves)
 
     section_m, diameter_m = 0.0, FIRST_TRIED_M
     for _ in range(_MAX_ITERATIONS):

@@ -17,7 +17,7 @@ from designer.model.robot import Poses
 from designer.model.space import ListedOrientations, OrientationTable, Toward
 from designer.sizing.newton import size_poses
 from designer.study import Study
-from designer.workspace.best_turns import BestTurns
+from designer.workspace.best_orientations import BestOrientations
 from designer.workspace.refine import refine
 
 BODY = """\
@@ -128,7 +128,7 @@ def test_a_free_orientation_is_as_good_as_brute_force(seed: int, study_of: Study
     study = study_of(free)
     assert study.workspace is not None
     law = study.workspace.orientations.law
-    assert isinstance(law, BestTurns)
+    assert isinstance(law, BestOrientations)
     positions = rng.uniform([-2, -2, 1], [2, 2, 4], (12, 3))
     low, high = law.range_rad
     grid = np.stack(np.meshgrid(*np.linspace(low[:2], high[:2], 41).T), axis=-1).reshape(-1, 2)
@@ -153,7 +153,7 @@ def test_what_a_free_orientation_costs_between(
     study = study_of(f"{box}\n  {free}")
     assert study.workspace is not None
     law = study.workspace.orientations.law
-    assert isinstance(law, BestTurns)
+    assert isinstance(law, BestOrientations)
     positions = np.random.default_rng(0).uniform(
         [-half_m, -half_m, 1], [half_m, half_m, 4], (90, 3)
     )
@@ -181,7 +181,7 @@ def test_a_long_list_is_free_between_some_of_its_poses(study_of: StudyOf) -> Non
     study = study_of(free, list="x_m,y_m,z_m\n" + rows)
     assert study.workspace is not None
     law = study.workspace.orientations.law
-    assert isinstance(law, BestTurns)
+    assert isinstance(law, BestOrientations)
     assert len(law.table.positions_m) <= 256
     assert "at 64 others" in law.words
     assert len(np.concatenate([*study.workspace.places()])) == 900

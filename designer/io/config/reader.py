@@ -39,7 +39,7 @@ from designer.model.workspace import Workspace
 from designer.plugins import Plugins, find_plugins
 from designer.study import DeclaredEffect, Entry, GradeFamily, Study, StudySource
 from designer.units import DENSITY, NUMBER, STRESS, Dimension, format_SI
-from designer.workspace.best_turns import BestTurns
+from designer.workspace.best_orientations import BestOrientations
 
 Listed = tuple[Region, Orientations]
 DEFAULT = "default"
@@ -322,7 +322,7 @@ class _PlacesBuilder:
         single, free = section.orientation, section.orientation_free
         if free is not None:
             ends = frozen_array(free.bounds_rad)
-            law = BestTurns(self.robot, self.material, region, ends, section.hangs_below)
+            law = BestOrientations(self.robot, self.material, region, ends, section.hangs_below)
             return Orientations(law=law)
         if single is not None and single.toward is not None:
             return Orientations(law=Toward(frozen_array(single.toward), frozen_array(single.axis)))

@@ -15,12 +15,11 @@ from typing import TYPE_CHECKING, Any, SupportsFloat
 import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.carries import Carries
-from designer.analysis.fabrication import FabricatedCable, fabricated_cables
 from designer.analysis.governing import GoverningPose
+from designer.analysis.lengths import FabricatedCable, fabricated_cables
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.reactions import Reaction
-from designer.analysis.sensitivities import Sensitivities
+from designer.analysis.sensitivity import Sensitivities, SensitivityReport
 from designer.grades.grade import NOT_NAMED, TRUST_MEANING
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
 from designer.model.verdict import Verdict
@@ -95,7 +94,7 @@ def requirements(analysis: Analysis) -> Context:
     write = _alike(cable.exit_tension_N for cable in pose.cables)
     return {
         **shown,
-        "governing_cable": pose.cables[int(pose.alone.cable_tension_N.argmax())].cable,
+        "governing_cable": pose.cables[int(pose.equilibrium.cable_tension_N.argmax())].cable,
         "tensions": [write(one.exit_tension_N, one.platform_tension_N) for one in pose.cables],
         "forces": _forces(pose),
     }
@@ -121,13 +120,13 @@ def _alike(forces_N: Iterable[float]) -> Callable[..., tuple[str, ...]]:
 
 def sensitivities(analysis: Analysis) -> Mapping[str, object] | None:
     """What carries the result; None where no rope is chosen."""
-    carries, groups = analysis.carries, analysis.group_slopes
+    carries, groups = analysis.sensitivity, analysis.group_slopes
     if carries is not None:
         return _of_one_rope(carries)
     return _of_groups(groups) if groups else None
 
 
-def _of_one_rope(carries: Carries) -> Mapping[str, object]:
+def _of_one_rope(carries: SensitivityReport) -> Mapping[str, object]:
     slopes, utilisation = carries.sensitivities, carries.governing.utilisation
     platform = carries.governing.loaded.bare[0].platform
     values = {
@@ -151,7 +150,7 @@ def _of_one_rope(carries: Carries) -> Mapping[str, object]:
     }
 
 
-def slopes_of_moves(carries: Carries) -> list[Change]:
+def slopes_of_moves(carries: SensitivityReport) -> list[Change]:
     """Return what moves outward, and the exit points that matter most, with their slopes [1/m]."""
     moves = [("Sides of the region outward", carries.sensitivities.of("region").derivative)]
     slopes = carries.sensitivities.exit_points_per_m
@@ -162,7 +161,7 @@ def slopes_of_moves(carries: Carries) -> list[Change]:
     return [(name, slope) for name, slope in moves if math.isfinite(slope)]
 
 
-def shares_of_inputs(carries: Carries) -> list[Change]:
+def shares_of_inputs(carries: SensitivityReport) -> list[Change]:
     """Return the elasticity of each input over that of the strength, where it is known."""
     slopes = carries.sensitivities
     utilisation = -slopes.of("efficiency").derivative * slopes.of("efficiency").value
