@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 
 from designer import checked
 from designer.arrays import FloatArray, IntArray, frozen_array
+from designer.spelling import vector
 
 _STRAIGHT = 1e-9
 """Sine of the angle to a point straight behind, from which on that counts as straight."""
@@ -78,9 +79,7 @@ class Toward(Following):
 
     @property
     def words(self) -> str:
-        point, axis = (
-            f"({', '.join(f'{x:g}' for x in vector)})" for vector in (self.point_m, self.axis)
-        )
+        point, axis = vector(self.point_m, 6), vector(self.axis)
         return f"the platform's axis {axis} toward {point} m"
 
 

@@ -14,7 +14,7 @@ from designer.model.load_case import STATIC
 from designer.selection.candidate import Candidate, Standing
 from designer.selection.objectives import MEANINGS
 from designer.selection.verify import Verification
-from designer.spelling import position
+from designer.spelling import digits, position
 from designer.study import Objective
 
 Search = Callable[[Sequence[Candidate]], Sequence[Verification]]
@@ -165,7 +165,7 @@ def _standing(
         )
     if not met.holds:
         least = "" if candidate.sampled.is_complete else "at least "
-        percent = f"{least}{100.0 * met.utilisation:.4g} %"
+        percent = f"{least}{digits(100.0 * met.utilisation)} %"
         return "too_thin", f"meets {percent} of its allowable tension at {worst}"
     failed = rejection_words(candidate)
     if failed is not None and candidate is not best:

@@ -8,6 +8,7 @@ from typing import ClassVar, Literal
 from designer.arrays import FloatArray
 from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate
+from designer.spelling import digits
 from designer.study import CableGroup
 
 Outcome = Literal["holds", "fails", "not_better"]
@@ -140,7 +141,7 @@ class GroupChoice:
                 return f"Stopped after {count} proposals, none of which holds."
             return (
                 f"Stopped after {count} proposals: no assignment of {of} that holds has less than "
-                f"{self.bound:.4g} {self.unit}, so one may be {kind} by up to {self.gap:.2%}."
+                f"{digits(self.bound)} {self.unit}, so one may be {kind} by up to {self.gap:.2%}."
             )
         means = "by poses that the solver showed they cannot hold"
         if self.by_weight:
