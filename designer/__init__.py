@@ -22,17 +22,14 @@ _HOMES = {
     "designer.diagnosis.result": "Diagnosis",
     "designer.errors": "DesignerError EffectError InputError OutputError",
     "designer.model.cable": "Cable Material",
-    "designer.model.drum": "Drum",
     "designer.model.load_case": "Ice LoadCase Wind",
     "designer.model.measurements": "Measurements",
-    "designer.model.point_list": "PointList",
-    "designer.model.prism": "Prism",
-    "designer.model.rectangle": "Rectangle",
+    "designer.model.region": "PointList Prism Rectangle",
     "designer.model.robot": "Platform Poses Robot",
     "designer.model.space": "Orientations",
     "designer.model.uncertainty": "Normal Uncertainty Uniform",
     "designer.model.verdict": "Verdict",
-    "designer.model.winches": "Winches",
+    "designer.model.winches": "Drum Winches",
     "designer.model.workspace": "Workspace",
     "designer.optimum.optimise": "Optimum optimise",
     "designer.resources": "example_file example_names",
@@ -65,17 +62,14 @@ if TYPE_CHECKING:
     from designer.grades.grade import Grade
     from designer.grades.registry import Catalogue
     from designer.model.cable import Cable, Material
-    from designer.model.drum import Drum
     from designer.model.load_case import Ice, LoadCase, Wind
     from designer.model.measurements import Measurements
-    from designer.model.point_list import PointList
-    from designer.model.prism import Prism
-    from designer.model.rectangle import Rectangle
+    from designer.model.region import PointList, Prism, Rectangle
     from designer.model.robot import Platform, Poses, Robot
     from designer.model.space import Orientations
     from designer.model.uncertainty import Normal, Uncertainty, Uniform
     from designer.model.verdict import Verdict
-    from designer.model.winches import Winches
+    from designer.model.winches import Drum, Winches
     from designer.model.workspace import Workspace
     from designer.optimum.optimise import Optimum, optimise
     from designer.resources import example_file, example_names

@@ -24,10 +24,9 @@ from designer.grades.registry import Catalogue, load_catalogue
 from designer.io import config
 from designer.io.results import read_result
 from designer.model.motion import limited, timed
-from designer.model.point_list import PointList
+from designer.model.region import PointList
 from designer.model.robot import Poses
-from designer.model.space import Orientations
-from designer.model.turning import EachPose
+from designer.model.space import EachPose, Orientations
 from designer.model.workspace import Workspace
 from designer.plugins import find_plugins
 from designer.progress import SILENT, Reporter

@@ -14,15 +14,12 @@ from designer.effects.design import AsBuilt, built_with
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED, KnownEffects
 from designer.errors import Fault, InputError, MissingLibraryError
-from designer.model.cable import Material, MaterialName, Preference, Trust
-from designer.model.duty import RUNNING_ROPE, SOURCE, DutyClass
+from designer.model.cable import Material, MaterialName, Preference, PriceList, Trust
 from designer.model.load_case import EACH, LoadCase
-from designer.model.machine import TEMPERATE, Machine, Surroundings
 from designer.model.measurements import Measurements
-from designer.model.price_list import PriceList
-from designer.model.robot import Poses, Robot
-from designer.model.rope_life import RopeLife
+from designer.model.robot import TEMPERATE, Machine, Poses, Robot, Surroundings
 from designer.model.uncertainty import Uncertainty
+from designer.model.winches import RUNNING_ROPE, SOURCE, DutyClass, RopeLife
 from designer.model.workspace import Workspace
 from designer.resources import missing_library
 

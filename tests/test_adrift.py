@@ -9,7 +9,7 @@ from designer.analysis.adrift import adrift_in
 from designer.analysis.findings import Findings
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Wind
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Platform, Robot
 from designer.model.workspace import Workspace
 from designer.report.templates import environment

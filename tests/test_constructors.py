@@ -18,9 +18,7 @@ from designer.kernel.calling import situation_of
 from designer.model.cable import Cable, Cables, Material
 from designer.model.load_case import LoadCase
 from designer.model.measurements import Measurements
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
-from designer.model.rectangle import Rectangle
+from designer.model.region import PointList, Prism, Rectangle
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
 from designer.model.workspace import Workspace

@@ -10,7 +10,7 @@ import pytest
 from designer import __version__
 from designer.documents.plain import RESULT_FORMAT
 from designer.errors import InputError
-from designer.grades.files import read_grade
+from designer.grades.registry import read_grade
 from designer.io.config import read_study
 from designer.io.results import read_result
 from designer.resources import data_folder, example_file

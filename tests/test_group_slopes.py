@@ -13,7 +13,7 @@ import pytest
 from designer.analysis.sensitivities import Sensitivities, group_sensitivities
 from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.cable import Cable, Cables
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
 from designer.report.design import sections

@@ -14,12 +14,11 @@ import designer
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
 from designer.arrays import FloatArray
-from designer.explore.ropes import full_ropes
+from designer.explore.answers import full_ropes
 from designer.explore.session import Session
 from designer.model.load_case import Loaded
-from designer.model.requirement import Answer
 from designer.model.robot import Poses, Robot
-from designer.model.verdict import Verdict
+from designer.model.verdict import Answer, Verdict
 from designer.model.workspace import Workspace
 from designer.plugins import find_plugins
 from designer.report.design.report import design_report

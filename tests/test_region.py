@@ -7,10 +7,7 @@ import pytest
 from scipy.stats import qmc
 
 from designer.arrays import frozen_array
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
-from designer.model.rectangle import Rectangle
-from designer.model.region import ring
+from designer.model.region import PointList, Prism, Rectangle, ring
 from designer.model.sobol import halton, sobol
 from designer.model.space import Orientations, Space, named_pose
 

@@ -37,9 +37,8 @@ from designer.analysis.verification import SecondAnswer, second_answers
 from designer.documents.plain import lies_in
 from designer.effects.design import AsBuilt
 from designer.grades.registry import Catalogue, load_catalogue
-from designer.model.requirement import Answer, Requirement, State, answer_of
 from designer.model.robot import Poses
-from designer.model.verdict import Verdict
+from designer.model.verdict import Answer, Requirement, State, Verdict, answer_of
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Budget
 from designer.proof.servable import Servable, servable

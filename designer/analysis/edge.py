@@ -10,7 +10,7 @@ import numpy as np
 from designer.analysis.field import RegionField, field_at
 from designer.arrays import BoolArray, FloatArray, VerdictArray
 from designer.model import polygon
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.verdict import Verdict, are_open
 from designer.study import Study
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from designer.analysis.analyse import Analysis
 from designer.grades.grade import Grade, Size
-from designer.model.drum import DEAD_TURNS, Drum
+from designer.model.winches import DEAD_TURNS, Drum
 from designer.selection.spooling import Spooled, spooled_on
 
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, VerdictArray
+from designer.model.polygon import every_second
 from designer.model.region import CHUNK
-from designer.model.rings import every_second
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.physics import catenary

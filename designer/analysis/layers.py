@@ -8,7 +8,7 @@ import numpy as np
 
 from designer.analysis.maps import WorkspaceMaps
 from designer.arrays import FloatArray
-from designer.model.rings import every_second
+from designer.model.polygon import every_second
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.selection.usable import Usable, UsableSize

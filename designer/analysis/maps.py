@@ -13,8 +13,8 @@ from designer.analysis.edge import EdgeProfile, edge_profile
 from designer.analysis.field import RegionField, field_at, field_of
 from designer.analysis.governing import GoverningRopes
 from designer.arrays import FloatArray
+from designer.model.polygon import every_second
 from designer.model.region import Region
-from designer.model.rings import every_second
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace

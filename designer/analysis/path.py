@@ -30,10 +30,9 @@ from designer.documents.plain import Json, csv_text
 from designer.measured.assign import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.model.load_case import Loaded
 from designer.model.motion import Motion
-from designer.model.requirement import Requirement, State
 from designer.model.robot import Poses
-from designer.model.rope_life import RopeLife
-from designer.model.verdict import Verdict
+from designer.model.verdict import Requirement, State, Verdict
+from designer.model.winches import RopeLife
 from designer.statics.inverse import solve_sagging
 
 if TYPE_CHECKING:

@@ -15,8 +15,7 @@ from designer.effects.design import AsBuilt
 from designer.grades.grade import TRUST_MEANING
 from designer.model.cable import Cable, Cables
 from designer.model.load_case import STATIC, Loaded
-from designer.model.requirement import Answer, Requirement, State
-from designer.model.verdict import Verdict
+from designer.model.verdict import Answer, Requirement, State, Verdict
 from designer.progress import Reporter
 from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate

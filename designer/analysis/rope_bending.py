@@ -19,8 +19,8 @@ import numpy as np
 from designer.analysis.path_case import PathCase
 from designer.arrays import BoolArray, FloatArray
 from designer.documents.plain import Json
-from designer.model.requirement import Requirement, State
-from designer.model.rope_life import RopeLife
+from designer.model.verdict import Requirement, State
+from designer.model.winches import RopeLife
 from designer.physics.bending import borne_cycles, crossings
 from designer.selection.criteria import rope_diameter_m
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from designer.arrays import FloatArray
 from designer.documents.plain import Json, csv_text, plain, record
-from designer.model.price_list import PriceList
+from designer.model.cable import PriceList
 from designer.model.space import turn_of
 from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate

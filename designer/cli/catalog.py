@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from designer.cli.catalog_new import catalog_new
 from designer.cli.options import (
     WRONG_INPUT,
     AsJson,
-    HelpedCommands,
+    HookedCommands,
     NoPlugins,
     argument,
     quantity_of,
@@ -32,8 +31,17 @@ if TYPE_CHECKING:
 
 
 _LONGEST_NAME = 60
+
+
+class CatalogCommands(HookedCommands):
+    """The commands below `designer catalog`."""
+
+    hook = "register_catalog_commands"
+    order = ("list", "show", "check", "new", "new-plugin")
+
+
 catalog = typer.Typer(
-    cls=HelpedCommands, help="Look at the rope grades that are known.", no_args_is_help=True
+    cls=CatalogCommands, help="Look at the rope grades that are known.", no_args_is_help=True
 )
 
 
@@ -143,8 +151,8 @@ def catalog_check(
 
     Example:  designer catalog check my-ropes/
     """
-    from designer.grades.files import read_grades
     from designer.grades.listing import summary, ton_remarks
+    from designer.grades.registry import read_grades
 
     if path is not None:
         files, faults = read_grades(path, needs_any=True)
@@ -159,9 +167,6 @@ def catalog_check(
     typer.echo(summary(catalogue) + ("" if catalogue.problems else ": no fault found"))
     if catalogue.problems:
         raise typer.Exit(WRONG_INPUT)
-
-
-catalog.command("new")(catalog_new)
 
 
 @catalog.command("new-plugin")

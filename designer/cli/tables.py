@@ -14,7 +14,7 @@ from designer.cli.terminal import bare_table, show
 from designer.grades.grade import TYPICAL_LOAD_FRACTION, Grade
 from designer.grades.listing import facts
 from designer.model.load_case import STATIC
-from designer.model.requirement import Answer
+from designer.model.verdict import Answer
 from designer.spelling import in_runs, kilograms, position, stated
 
 if TYPE_CHECKING:
@@ -350,7 +350,7 @@ def print_check(check: Check, folder: Path, written: Sequence[str]) -> None:
 
 
 def _left(check: Check) -> Iterator[Row]:
-    from designer.model.measured_data import KINDS
+    from designer.model.measurements import KINDS
 
     for kind in KINDS:
         for label, model in check.models:

@@ -16,7 +16,7 @@ from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.diagnosis.problem import Problem, added_force_N, channel_names
 from designer.diagnosis.statistics import block_of, is_outlier, rms, without_outliers
 from designer.effects.effect import Setting
-from designer.model.measured_data import KINDS, Noise
+from designer.model.measurements import KINDS, Noise
 from designer.model.robot import Poses
 from designer.statics.forward import solve_forward
 

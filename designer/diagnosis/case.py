@@ -17,9 +17,8 @@ from designer.effects.effect import NEEDS, Effect, Setting, as_built, frame_size
 from designer.effects.platform_loads import LEAST_ROWS
 from designer.errors import InputError
 from designer.measured.sense import left_handed
-from designer.model.machine import Machine
-from designer.model.measured_data import KINDS, Measured, Noise
-from designer.model.measurements import Measurements
+from designer.model.measurements import KINDS, Measured, Measurements, Noise
+from designer.model.robot import Machine
 from designer.statics.geometry import cable_geometry
 from designer.study import Study, declared_settings
 

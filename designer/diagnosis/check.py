@@ -25,7 +25,7 @@ from designer.diagnosis.statistics import block_of
 from designer.diagnosis.structure import Structure, structure_left, with_gross_errors
 from designer.documents.plain import Json, json_text, record
 from designer.effects.effect import Setting
-from designer.model.measured_data import KINDS, Measured, Noise
+from designer.model.measurements import KINDS, Measured, Noise
 from designer.study import Study
 
 CARRIED = "as estimated when diagnosed"

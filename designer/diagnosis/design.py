@@ -13,9 +13,9 @@ from designer.model.cable import Cable
 from designer.model.uncertainty import MOST_DEVIATION, Uncertainty
 from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate
+from designer.selection.cases import converge_stiffness
 from designer.selection.efficiency import Allowance, bending_efficiency
 from designer.selection.select import best_product
-from designer.selection.stiffening import as_it_meets
 from designer.selection.verify import verify
 from designer.study import DeclaredEffect, Study, as_built_by
 from designer.workspace.section import section_of_workspace
@@ -148,7 +148,9 @@ def _use(built: AsBuilt, workspace: Workspace, cable: Cable) -> Use:
     def max_tension_N(rope: Cable) -> float:
         return verify(built.robot, workspace, rope).max_tension_N
 
-    verification = verify(built.robot, workspace, as_it_meets(built.cable(cable), max_tension_N))
+    verification = verify(
+        built.robot, workspace, converge_stiffness(built.cable(cable), max_tension_N)
+    )
     return Use(verification.max_tension_N, verification.utilisation)
 
 

@@ -38,7 +38,7 @@ from designer.effects.effect import Effect
 from designer.effects.platform_loads import PLATFORM_FORCE
 from designer.effects.setting_up import POSE_DISTORTION
 from designer.errors import EffectError
-from designer.model.measured_data import Measured
+from designer.model.measurements import Measured
 from designer.progress import Pace
 from designer.study import Study
 

@@ -26,10 +26,9 @@ from designer.diagnosis.fit import HUBER, huber, jacobian, starting_vector
 from designer.diagnosis.problem import Kind, Predictor, Problem, kind_of, readings_of
 from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.effects.effect import Effect, Readings, Setting, frame_size_m
-from designer.model.machine import Machine
-from designer.model.measured_data import EVEN, Measured, Noise
+from designer.model.measurements import EVEN, Measured, Noise
 from designer.model.region import Region
-from designer.model.robot import Poses, Robot
+from designer.model.robot import Machine, Poses, Robot
 from designer.statics.forward import moved_poses
 from designer.statics.geometry import cable_geometry
 

@@ -26,8 +26,7 @@ from designer.effects.effect import Effect, Parameter, Setting, as_built
 from designer.errors import InputError
 from designer.measured.rows import FEWEST_ROWS
 from designer.model.cable import Cable
-from designer.model.measured_data import Measured, Noise
-from designer.model.measurements import Measurements
+from designer.model.measurements import Measured, Measurements, Noise
 from designer.model.region import Region
 from designer.model.robot import Poses
 from designer.statics.inverse import Statics, solve_sagging

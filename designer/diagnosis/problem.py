@@ -20,9 +20,8 @@ from designer.effects.effect import Effect, Readings, Setting, as_built
 from designer.effects.registry import SHIPPED, KnownEffects
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.load_case import AIR_DENSITY_KG_PER_M3
-from designer.model.machine import Machine
-from designer.model.measured_data import EVEN, Measured, Noise
-from designer.model.robot import Poses
+from designer.model.measurements import EVEN, Measured, Noise
+from designer.model.robot import Machine, Poses
 from designer.statics.balance import InternalBalance, imbalance, solve_taut, solve_underactuated
 from designer.statics.inverse import Statics, solve_sagging
 

@@ -30,8 +30,8 @@ from designer.documents.plain import (
 from designer.effects.effect import Effect, Readings, Setting
 from designer.effects.platform_loads import PLATFORM_FORCE
 from designer.effects.setting_up import POSE_DISTORTION
-from designer.model.machine import Machine
-from designer.model.measured_data import KINDS, Measured, Noise, ReadingKind
+from designer.model.measurements import KINDS, Measured, Noise, ReadingKind
+from designer.model.robot import Machine
 from designer.spelling import in_runs
 from designer.study import DeclaredEffect, Study
 

@@ -35,7 +35,7 @@ from designer.effects.effect import Readings, Setting
 from designer.effects.platform_loads import LEAST_ROWS, best_step
 from designer.effects.winches import best_wave
 from designer.measured.sense import left_handed
-from designer.model.measured_data import Measured
+from designer.model.measurements import Measured
 from designer.spelling import in_runs
 
 ORDER = ("time_s", "row")

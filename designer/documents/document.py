@@ -47,33 +47,21 @@ _SPECIAL: dict[str, Data] = {
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """One value of a document.
+    """One value of a document."""
 
-    Parameters
-    ----------
-    line : int
-        Line from 1; for a field of a mapping, the line of its name.
-    content : str, tuple of Node, or dict of Node
-        Text as written, items, or fields.
-    is_plain : bool
-        Whether a text stands without quotes, so that it may be a number or a truth value.
-    size, height : int
-        Values and levels of nesting below this one, aliases expanded; itself is counted as a value.
-    start, end, name_start : int
-        Letters of the text before it, up to its end without blanks and comments, and before its
-        name if it is a field of a mapping.
-    is_flow : bool
-        Whether it is a mapping or list in brackets.
-    """
-
-    line: int
-    content: str | tuple[Node, ...] | dict[str, Node]
+    line: int  #: Line from 1; for a field of a mapping, the line of its name
+    content: str | tuple[Node, ...] | dict[str, Node]  #: Text as written, items, or fields
+    #: Whether a text stands without quotes, so that it may be a number or a truth value
     is_plain: bool = False
+    #: Values and levels of nesting below this one, aliases expanded; itself is counted as a value
     size: int = 1
     height: int = 0
+    #: Letters of the text before it, up to its end without blanks and comments, and before its name
+    #: if it is a field of a mapping
     start: int = field(default=0, compare=False)
     end: int = field(default=0, compare=False)
     name_start: int = field(default=0, compare=False)
+    #: Whether it is a mapping or list in brackets
     is_flow: bool = field(default=False, compare=False)
 
     def data(self) -> Data:

@@ -18,8 +18,8 @@ from designer.effects.effect import (
     sized_by,
     weight_N,
 )
-from designer.model.machine import Machine
-from designer.model.measured_data import Measured
+from designer.model.measurements import Measured
+from designer.model.robot import Machine
 from designer.units import FLEXURAL_RIGIDITY, FORCE, NUMBER, PER_TEMPERATURE, TIME
 
 # Ropes softer or stiffer, heavier or lighter than declared: all of them, or that of one cable.

@@ -12,8 +12,7 @@ import numpy as np
 from designer.effects.effect import Setting, as_built
 from designer.errors import EffectError
 from designer.model.cable import Cable, Material
-from designer.model.machine import Machine
-from designer.model.robot import Robot
+from designer.model.robot import Machine, Robot
 
 _PROBES_M = (1e-3, 7e-3, 0.05, 0.35)
 """Diameters at which a family is looked at, to tell whether an effect leaves it one."""

@@ -11,9 +11,8 @@ from typing import Literal
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.model.machine import Machine
-from designer.model.measured_data import Measured
-from designer.model.robot import Poses
+from designer.model.measurements import Measured
+from designer.model.robot import Machine, Poses
 from designer.statics.geometry import cable_geometry
 from designer.units import Dimension
 

@@ -25,10 +25,8 @@ from designer.effects.effect import (
 from designer.effects.registry import KnownEffects
 from designer.errors import EffectError, described, one_line
 from designer.model.cable import Cable
-from designer.model.machine import Machine
-from designer.model.measured_data import Measured
-from designer.model.measurements import POSES
-from designer.model.robot import Platform, Poses, Robot
+from designer.model.measurements import POSES, Measured
+from designer.model.robot import Machine, Platform, Poses, Robot
 from designer.plugins import OWN_NAMES, Offer, Plugins, attempt, call_hook
 from designer.units import Dimension, QuantityError, read_quantity
 

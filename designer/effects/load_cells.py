@@ -17,8 +17,8 @@ from designer.effects.effect import (
     weight_N,
 )
 from designer.effects.winches import direction_of
-from designer.model.machine import Machine
-from designer.model.measured_data import Measured
+from designer.model.measurements import Measured
+from designer.model.robot import Machine
 from designer.physics import pulley
 from designer.statics.geometry import level_geometry
 from designer.units import FORCE, NUMBER

@@ -21,8 +21,8 @@ from designer.effects.effect import (
     weight_N,
 )
 from designer.model.load_case import AIR_DENSITY_KG_PER_M3
-from designer.model.machine import Machine
-from designer.model.measured_data import Measured
+from designer.model.measurements import Measured
+from designer.model.robot import Machine
 from designer.units import AREA, FORCE, MASS, MOMENT, TIME
 
 # A platform heavier or lighter than declared.

@@ -18,9 +18,8 @@ from designer.effects.effect import (
     pull_of,
     sized_by,
 )
-from designer.model.machine import Machine
-from designer.model.measured_data import Measured
-from designer.model.robot import Poses, Robot
+from designer.model.measurements import Measured
+from designer.model.robot import Machine, Poses, Robot
 from designer.physics import pulley
 from designer.statics.geometry import cable_geometry, density_matrix, level_geometry, plane_vector
 from designer.statics.pulleys import straight_run

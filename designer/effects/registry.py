@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from designer.effects import cables, load_cells, platform_loads, pulleys, setting_up, winches
 from designer.effects.effect import Effect, Setting
-from designer.model.machine import Machine
+from designer.model.robot import Machine
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,9 +28,8 @@ from designer.effects.effect import (
     platform_extent_m,
     sized_by,
 )
-from designer.model.machine import Machine
-from designer.model.measured_data import Measured
-from designer.model.robot import Poses
+from designer.model.measurements import Measured
+from designer.model.robot import Machine, Poses
 from designer.statics.geometry import cable_geometry
 from designer.units import ANGLE, LENGTH, NUMBER, PER_LENGTH, TIME
 

@@ -19,8 +19,8 @@ from designer.effects.effect import (
     sized_by,
 )
 from designer.effects.platform_loads import LEAST_ROWS
-from designer.model.machine import Machine
-from designer.model.measured_data import Measured
+from designer.model.measurements import Measured
+from designer.model.robot import Machine
 from designer.units import ANGLE, COMPLIANCE, LENGTH, NUMBER, PER_LENGTH
 
 # Scale and zero.

@@ -12,11 +12,17 @@ import numpy as np
 
 from designer.documents.plain import csv_text
 from designer.errors import Fault, InputError, NothingToExportError, OutputError
-from designer.explore.here import CableHere, here
-from designer.explore.map import MapAnswer, map_answer
+from designer.explore.answers import (
+    CableState,
+    MapAnswer,
+    RopeRow,
+    Ropes,
+    map_answer,
+    pose_answer,
+    quick_ropes,
+)
 from designer.explore.question import Question
-from designer.explore.reading import text_of
-from designer.explore.ropes import RopeRow, Ropes, quick_ropes
+from designer.explore.session import text_of
 from designer.io.output import file_names, output_folder, write_file
 from designer.progress import Reporter
 
@@ -82,24 +88,13 @@ def export(
     ropes: Ropes | None = None,
     poses: Path | None = None,
 ) -> Written:
-    """Write files, whole or not at all.
+    """Write files, whole or not at all; raise DesignerError where that fails, or nothing is there.
 
-    Parameters
-    ----------
-    content : str
-        ``report``: what `designer report` writes, into the folder ``target``. ``tables``:
-        ``cables.csv``, ``map.csv`` and ``ropes.csv`` into that folder. ``vtk``: the map into the
-        file ``target``, which ends in ``.vtu``. ``lengths``: what `designer lengths` writes. Else
-        what `designer export` does.
-    ropes : Ropes, optional
-        For ``tables``: the ropes as they are shown.
-    poses : Path, optional
-        For ``lengths``: the table of poses; without it those along the path of the study.
-
-    Raises
-    ------
-    DesignerError
-        If they cannot be written, or there is nothing to write.
+    The ``content`` ``report`` is what `designer report` writes, into the folder ``target``;
+    ``tables``: ``cables.csv``, ``map.csv`` and ``ropes.csv``, with the ``ropes`` as they are shown,
+    into that folder; ``vtk``: the map, into a file ``.vtu``; ``lengths``: what `designer lengths`
+    writes, at a table of ``poses``, else along the path of the study. Else what `designer export`
+    does.
     """
     target = Path(target)
     if content == "report":
@@ -142,7 +137,6 @@ def _for_program(question: Question, reporter: Reporter, name: str, target: Path
 
 
 def _report(question: Question, reporter: Reporter, folder: Path) -> Written:
-    """Write the report, by the pipeline of the command."""
     from designer.analysis.analyse import analyse
     from designer.report.figures.opengl import begin_probe
     from designer.report.render import REPORT_FILES, write_report_files
@@ -156,9 +150,9 @@ def _report(question: Question, reporter: Reporter, folder: Path) -> Written:
 
 
 def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Written:
-    pose = here(question)
+    pose = pose_answer(question)
     tables = {
-        "cables.csv": _csv([f.name for f in fields(CableHere)], map(asdict, pose.cables)),
+        "cables.csv": _csv([f.name for f in fields(CableState)], map(asdict, pose.cables)),
     }
     chart = map_answer(question, fine=True, quantities=_ALL)
     if chart.grids:
@@ -183,7 +177,6 @@ def map_columns(chart: MapAnswer) -> dict[str, Any]:
 
 
 def rope_table(ropes: Ropes) -> str:
-    """Return what becomes of each rope as the text of a CSV."""
     return _csv([*_ROPE_COLUMNS, "x_m", "y_m", "z_m"], map(_rope, ropes.rows))
 
 
@@ -226,36 +219,19 @@ def _vtk(question: Question, target: Path) -> Written:
 
 @dataclass(frozen=True, slots=True)
 class OptimisedStudy:
-    """What an optimisation came to, for the window.
+    """What an optimisation came to, for the window."""
 
-    Parameters
-    ----------
-    headline : str
-        The objective before and after, or that nothing better was found.
-    variables : tuple of str
-        What was chosen, each with its value before and after.
-    trust : tuple of str
-        How far it is to be believed, a sentence each.
-    given_text : str
-        The study as the search had it.
-    text : str or None
-        The study with the better design; None where none was found.
-    """
-
-    headline: str
-    variables: tuple[str, ...]
-    trust: tuple[str, ...]
-    given_text: str
-    text: str | None
+    headline: str  #: The objective before and after, or that nothing better was found
+    variables: tuple[str, ...]  #: What was chosen, each with its value before and after
+    trust: tuple[str, ...]  #: How far it is to be believed, a sentence each
+    given_text: str  #: The study as the search had it
+    text: str | None  #: The study with the better design; None where none was found
 
 
 def optimised_study(question: Question, reporter: Reporter, *, plan: Path) -> OptimisedStudy:
     """Search for a better design of the study in the window, as `designer optimise` does.
 
-    Raises
-    ------
-    InputError
-        If the plan is faulty, or is of another study, or the study is not saved.
+    Raises InputError if the plan is faulty, or is of another study, or the study is not saved.
     """
     from designer.optimum.optimise import optimum_of
     from designer.optimum.plan import read_optimisation
@@ -279,13 +255,8 @@ def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: P
     Writes the store ``target`` and a folder with its report beside it. A sweep that was given up
     goes on with the same plan and store.
 
-    Raises
-    ------
-    InputError
-        If the plan is faulty, or is of another study, or the study is not saved; or if something
-        else is at the target.
-    OutputError
-        If a file cannot be written.
+    Raises InputError if the plan is faulty, or is of another study, or the study is not saved; or
+    if something else is at the target; OutputError if a file cannot be written.
     """
     from designer.report.sweep import write_sweep
     from designer.sweeps import run as running

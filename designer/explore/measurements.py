@@ -14,45 +14,26 @@ from designer.diagnosis.problem import Problem, channel_names
 from designer.explore.question import Question
 from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
-from designer.model.measured_data import Measured
+from designer.model.measurements import Measured
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Residuals:
-    """What the model, with the declared effects, leaves of each reading.
+    """What the model, with the declared effects, leaves of each reading."""
 
-    Parameters
-    ----------
-    row_numbers : array (n_rows,)
-        Of each row in the file, the first below the head being 1.
-    position_m : array (n_rows, 3)
-        Where the platform was [m].
-    channels, units : tuple of str
-        Names of the readings, such as ``length 1``, and their SI units.
-    residual : array (n_rows, n_channels)
-        Measured less predicted; NaN where nothing was measured or nothing holds the pose.
-    without : array (n_rows, n_channels)
-        The same without the declared effects.
-    noise : array (n_channels,)
-        Standard deviation of one reading.
-    noise_source : str
-        ``declared``, or how the noise was estimated.
-    covariates : mapping of str to array (n_rows,)
-        What a residual may go with, by its title with unit.
-    notes : tuple of str
-        What is to be known of the data.
-    """
-
-    row_numbers: IntArray
-    position_m: FloatArray
-    channels: tuple[str, ...]
+    row_numbers: IntArray  #: (n_rows,) of each row in the file, the first below the head being 1
+    position_m: FloatArray  #: (n_rows, 3) where the platform was [m]
+    channels: tuple[str, ...]  #: Names of the readings, such as ``length 1``, and their SI units
     units: tuple[str, ...]
+    #: (n_rows, n_channels) measured less predicted; NaN where nothing was measured or nothing holds
+    #: the pose
     residual: FloatArray
-    without: FloatArray
-    noise: FloatArray
-    noise_source: str
+    without: FloatArray  #: (n_rows, n_channels) the same without the declared effects
+    noise: FloatArray  #: (n_channels,) standard deviation of one reading
+    noise_source: str  #: ``declared``, or how the noise was estimated
+    #: (n_rows,) what a residual may go with, by its title with unit
     covariates: Mapping[str, FloatArray]
-    notes: tuple[str, ...]
+    notes: tuple[str, ...]  #: What is to be known of the data
 
     def size(self) -> FloatArray:
         """Return the root mean square of each row in units of noise (n_rows,), NaN for none."""
@@ -65,10 +46,7 @@ class Residuals:
 def residuals(question: Question) -> Residuals:
     """Compare the data of a study with its model.
 
-    Raises
-    ------
-    InputError
-        If the study has no measurements, or the data are not as they should be.
+    Raises InputError if the study has no measurements, or the data are not as they should be.
     """
     study = question.study
     measured = read_measured(study)
@@ -120,34 +98,20 @@ def _covariates(measured: Measured) -> dict[str, FloatArray]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DiagnosisAnswer:
-    """What a diagnosis came to.
+    """What a diagnosis came to."""
 
-    Parameters
-    ----------
-    title, text : str
-        The answer in a few words, and in sentences.
-    effects : tuple of str
-        What the model lacked, each with its fitted values.
-    errors : tuple of str
-        On rows that no fit has seen, of lengths and tensions: before, after, and the noise.
-    diagnosed_text : str
-        The study with what was fitted and found; a text for the session.
-    """
-
-    title: str
+    title: str  #: The answer in a few words, and in sentences
     text: str
-    effects: tuple[str, ...]
+    effects: tuple[str, ...]  #: What the model lacked, each with its fitted values
+    #: On rows that no fit has seen, of lengths and tensions: before, after, and the noise
     errors: tuple[str, ...]
-    diagnosed_text: str
+    diagnosed_text: str  #: The study with what was fitted and found; a text for the session
 
 
 def diagnosis_answer(question: Question, progress: Callable[[str], None]) -> DiagnosisAnswer:
     """Search for what the model lacks.
 
-    Raises
-    ------
-    InputError
-        If the study has no measurements, or the data are not as they should be.
+    Raises InputError if the study has no measurements, or the data are not as they should be.
     """
     from designer.report.diagnosis.report import verdict
     from designer.report.diagnosis.words import fitted_values, quantities

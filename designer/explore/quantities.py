@@ -9,28 +9,14 @@ from designer.model.verdict import Verdict
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """One way to colour the map.
+    """One way to colour the map."""
 
-    Parameters
-    ----------
-    key : str
-        Its name in answers.
-    title, unit : str
-        As shown; values times ``scale`` are in this unit.
-    scale : float
-        From SI to the unit.
-    definition : str
-        What it is, in a sentence.
-    is_category : bool
-        Whether values are whole numbers that stand for something.
-    """
-
-    key: str
-    title: str
+    key: str  #: Its name in answers
+    title: str  #: As shown; values times ``scale`` are in this unit
     unit: str
-    scale: float
-    definition: str
-    is_category: bool = False
+    scale: float  #: From SI to the unit
+    definition: str  #: What it is, in a sentence
+    is_category: bool = False  #: Whether values are whole numbers that stand for something
 
 
 QUANTITIES = (

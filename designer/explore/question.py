@@ -25,10 +25,9 @@ from designer.model.workspace import Workspace
 from designer.plugins import Plugins
 from designer.progress import Advance
 from designer.selection.candidate import Candidate, candidates_of
-from designer.selection.cases import FEW_AT_FIRST
+from designer.selection.cases import FEW_AT_FIRST, converge_stiffness
 from designer.selection.efficiency import Allowance
 from designer.selection.select import at_samples
-from designer.selection.stiffening import as_it_meets
 from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Study, as_built_by, require_enough_cables
 from designer.workspace.section import section_of_pose
@@ -50,7 +49,6 @@ class Rope:
 
     @property
     def label(self) -> str:
-        """Size and grade in one line."""
         return f"{self.size_id} of {self.grade_id}"
 
 
@@ -62,7 +60,6 @@ class RopePerCable:
 
     @property
     def label(self) -> str:
-        """The ropes, each once, in one line."""
         return ", ".join(dict.fromkeys(rope.label for rope in self.ropes))
 
 
@@ -73,29 +70,16 @@ def cables_words(rope: Rope | RopePerCable | None) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """A state of the window, as far as answers depend on it; what follows from it is kept.
+    """A state of the window, as far as answers depend on it; what follows from it is kept."""
 
-    Parameters
-    ----------
-    study : Study
-        The problem.
-    place : array (6,)
-        Where the platform is, and its rotation vector [m, rad].
-    rope : Rope, RopePerCable or None
-        The rope, or the ropes of groups, that are looked at; None for the thinnest cable of the
-        configured family.
-    text, path : str, Path
-        The config, and where it lies or its relative paths start from.
-    plugins : Plugins
-        Whose grades are in the catalogue.
-    """
-
-    study: Study = field(repr=False)
-    place: FloatArray
+    study: Study = field(repr=False)  #: The problem
+    place: FloatArray  #: (6,) where the platform is, and its rotation vector [m, rad]
+    #: The rope, or the ropes of groups, that are looked at; None for the thinnest cable of the
+    #: configured family
     rope: Rope | RopePerCable | None
-    text: str = field(repr=False)
+    text: str = field(repr=False)  #: The config, and where it lies or its relative paths start from
     path: Path
-    plugins: Plugins = field(repr=False)
+    plugins: Plugins = field(repr=False)  #: Whose grades are in the catalogue
 
     @property
     def pose(self) -> Poses:
@@ -114,7 +98,6 @@ class Question:
 
     @property
     def workspace(self) -> Workspace | None:
-        """Which poses the cable must serve."""
         return self.study.workspace
 
     @property
@@ -133,7 +116,6 @@ class Question:
 
     @property
     def robot(self) -> Robot:
-        """The robot as built."""
         return self.built.robot
 
     @cached_property
@@ -151,23 +133,18 @@ class Question:
     def cable(self) -> Cable | Cables | None:
         """What is looked at, with its figures as the solver takes them; None for the thinnest.
 
-        Raises
-        ------
-        InputError
-            If the catalogue has no such grade.
-        DesignerError
-            If a grade has no such size, the sheave leaves nothing of its strength, or there are
-            more or fewer ropes than cables.
+        Raises InputError if the catalogue has no such grade; DesignerError if a grade has no such
+        size, the sheave leaves nothing of its strength, or there are more or fewer ropes than
+        cables.
         """
         if self.rope is None or isinstance(self.rope, Rope):
-            return None if self.rope is None else self._as_it_meets(self.rope)
-        cables = {rope: self._as_it_meets(rope) for rope in self.rope.ropes}
+            return None if self.rope is None else self._with_converged_stiffness(self.rope)
+        cables = {rope: self._with_converged_stiffness(rope) for rope in self.rope.ropes}
         if len(self.rope.ropes) != self.robot.n_cables:
             raise DesignerError("the ropes of the groups are of a robot with other cables")
         return Cables(tuple(cables[rope] for rope in self.rope.ropes))
 
     def _grade_of(self, rope: Rope) -> Grade:
-        """Return the grade with this size alone."""
         grade = self.catalogue.grade(rope.grade_id)
         sizes = tuple(size for size in grade.sizes if size.id == rope.size_id)
         if not sizes:
@@ -186,13 +163,13 @@ class Question:
             )
         return self.built.of_products.cable(allowance.cable(grade, size))
 
-    def _as_it_meets(self, rope: Rope) -> Cable:
+    def _with_converged_stiffness(self, rope: Rope) -> Cable:
         """Return a rope as stiff as at the largest tension that it meets, at few samples."""
         cable = self.cable_in(STATIC, rope)
         if cable.stiffening is None:
             return cable
         if self.workspace is None:
-            return as_it_meets(
+            return converge_stiffness(
                 cable,
                 lambda stiffened: float(
                     solve_sagging(self.robot, self.pose, stiffened).largest_tension_N
@@ -226,17 +203,14 @@ class Question:
 def catalogue_of(study: Study, plugins: Plugins) -> Catalogue:
     """Return the catalogue of a study, read anew only where its files have changed.
 
-    Raises
-    ------
-    InputError
-        If a file that the study names is faulty, or there is no grade that it names.
+    Raises InputError if a file that the study names is faulty, or there is no grade that it names.
     """
     catalogue = kept_catalogue(study.catalogues, plugins)
     catalogue.require_grades_of(study)
     return catalogue
 
 
-def first_place(study: Study | None) -> FloatArray:
+def initial_place(study: Study | None) -> FloatArray:
     """Return where the platform is at first: in the study's pose, else in the middle."""
     if study is None:
         return frozen_array(np.zeros(6))
@@ -265,72 +239,52 @@ class Request:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Message:
-    """What becomes of a request: progress, and exactly one end.
+    """What becomes of a request: progress, and exactly one end."""
 
-    Parameters
-    ----------
-    request : Request
-        What was asked.
-    status : str
-        ``progress``; or the end: ``done``, ``failed``, or ``cancelled``, taken back or replaced by
-        a newer one.
-    answer : Any
-        Of a request that is done; None where the study has not what is asked for, such as a
-        workspace.
-    text : str
-        What went wrong, for the user as it stands; of progress what is being done.
-    steps, total : int
-        Of progress: how many steps are done, and of how many; a total of 0 is not known.
-    """
-
-    request: Request
+    request: Request  #: What was asked
+    #: ``progress``; or the end: ``done``, ``failed``, or ``cancelled``, taken back or replaced by a
+    #: newer one
     status: Status
+    #: Of a request that is done; None where the study has not what is asked for, such as a
+    #: workspace
     answer: Any = None
-    text: str = ""
+    text: str = ""  #: What went wrong, for the user as it stands; of progress what is being done
+    #: Of progress: how many steps are done, and of how many; a total of 0 is not known
     steps: int = 0
     total: int = 0
 
     @property
     def number(self) -> int:
-        """Of the request."""
         return self.request.number
 
     @property
     def kind(self) -> Kind:
-        """Of the request."""
         return self.request.kind
 
     @property
     def question(self) -> Question:
-        """Of the request."""
         return self.request.question
 
     @property
     def is_end(self) -> bool:
-        """Whether no other message follows."""
         return self.status != "progress"
 
 
 class ThrottledReporter:
     """A reporter, and a spinner, that tell how far something is, a few times a second at most.
 
-    Parameters
-    ----------
-    tell : callable
-        Called with what is being done, how many steps are done, and of how many; 0 of 0 where that
-        is not known.
+    ``tell`` is called with what is being done, how many steps are done, and of how many; 0 of 0
+    where that is not known.
     """
 
     def __init__(self, tell: Callable[[str, int, int], None]) -> None:
         self._tell, self._last_s = tell, -math.inf
 
     def __call__(self, text: str) -> None:
-        """Tell what is being done."""
         self._report(text, 0, 0)
 
     @contextmanager
     def task(self, name: str, total: int) -> Iterator[Advance]:
-        """Open a task of ``total`` steps."""
         finished, self._last_s = 0, -math.inf
 
         def advance(steps: int) -> None:

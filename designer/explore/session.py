@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, Self
 
@@ -11,30 +13,209 @@ from numpy.typing import ArrayLike
 
 from designer.arrays import FloatArray, frozen_array
 from designer.documents import edits
+from designer.documents.document import Document, Key, decode, document_of, path_text
+from designer.documents.opened import read_bytes
 from designer.effects.load import load_effects
-from designer.errors import Fault, InputError, OutputError
-from designer.explore.fields import Field, with_ends_of
-from designer.explore.question import Question, Rope, RopePerCable, first_place
-from designer.explore.reading import (
-    Context,
-    Reading,
-    Rejected,
-    SessionState,
-    pose_text,
-    put_back,
-    text_of,
-    with_entry,
-)
+from designer.effects.registry import KnownEffects
+from designer.errors import DesignerError, Fault, InputError, OutputError
+from designer.explore.fields import Field, keys_of, study_fields, with_slider_of
+from designer.explore.question import Question, Rope, RopePerCable, initial_place
+from designer.io.config.moved import moved_to
+from designer.io.config.reader import checked, study_of
+from designer.io.config.schema import StudySection
 from designer.io.output import write_file
 from designer.plugins import Plugins
 from designer.resources import example_file, example_names
 from designer.study import Study
 
+_SHORTHAND = {"pose": "position"}
+"""What a list in place of these mappings is; of all others the rotation vector."""
+_USUAL = "rotation_vector"
+_POSE_DIGITS = 9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Context:
+    """What a text is read with: where its relative paths start, effects, and plugins' grades."""
+
+    path: Path
+    effects: KnownEffects
+    plugins: Plugins
+
+    def read(self, text: str) -> Reading:
+        try:
+            document = document_of(text.encode(), str(self.path))
+            section = checked(document, self.effects)
+            study = study_of(section, document, self.path, self.effects, self.plugins)
+        except InputError as error:
+            return Reading(self, text, None, error.faults)
+        except DesignerError as error:
+            return Reading(self, text, None, (Fault(str(self.path), None, "", str(error)),))
+        return Reading(self, text, study, (), document, section)
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """A text, and the study that it is; None, and faults, where it is none."""
+
+    context: Context
+    text: str
+    study: Study | None
+    faults: tuple[Fault, ...]
+    document: Document | None = None
+    section: StudySection | None = None
+
+    @cached_property
+    def fields(self) -> tuple[Field, ...]:
+        """Every value that can vary; empty where the text is no study."""
+        if self.section is None or self.document is None:
+            return ()
+        return study_fields(self.section, self.document.root, self.context.effects.by_id)
+
+    @cached_property
+    def by_path(self) -> dict[str, Field]:
+        return {field.path: field for field in self.fields}
+
+    def moved_to(self, folder: Path) -> str:
+        """Return the text with the relative paths in it as they are from a folder."""
+        if self.document is None:
+            return self.text
+        return moved_to(folder, self.text, self.document, self.context.path.parent)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SessionState:
+    """All that a step may change."""
+
+    reading: Reading  #: The text, and what it is
+    #: The same, or, where the text is faulty, what was sound last; where nothing ever was, the text
+    live: Reading
+    place: FloatArray  #: (6,) where the platform is, and its rotation vector [m, rad]
+    rope: Rope | RopePerCable | None = None  #: The rope, or the ropes of groups, that are looked at
+    pin: object = None  #: What the present state is compared with; None for nothing
+
+
+@dataclass(frozen=True, slots=True)
+class Rejected:
+    """An entry that was refused: what was typed, and why."""
+
+    text: str
+    faults: tuple[Fault, ...]
+
+
+def text_of(path: Path) -> str:
+    """Return what a file holds, its line ends kept.
+
+    Raises InputError if it cannot be read, is too large, or is no text.
+    """
+    return decode(read_bytes(path, str(path)), str(path))
+
+
+def with_entry(reading: Reading, text: str, field: Field, typed: str) -> str:
+    """Return a text of a study with what was typed for a field of it.
+
+    Nothing typed takes an optional value out. What the text lacks is added: of a list, with the
+    other values of its row as they are.
+    """
+    keys = _keys_in_text(text, field.path)
+    is_given = edits.value_text(text, keys) is not None
+    if not typed.strip() and field.is_optional:
+        return edits.without(text, keys) if is_given else text
+    value = edits.scalar(typed)
+    if is_given:
+        return edits.with_value(text, keys, value)
+    if isinstance(keys[-1], int):
+        row = path_text(keys_of(field.path)[:-1])
+        parts = [f.text for f in reading.fields if path_text(keys_of(f.path)[:-1]) == row]
+        parts[keys[-1]] = value
+        value, keys = f"[{', '.join(parts)}]", keys[:-1]
+    return edits.with_value(_expanded(text, keys), keys, value)
+
+
+def put_back(present: Reading, saved: Reading, path: str) -> str:
+    """Return the present text with one field as the file has it, or without it."""
+    text = present.text
+    keys, saved_keys = _keys_in_text(text, path), _keys_in_text(saved.text, path)
+    saved_value = edits.value_text(saved.text, saved_keys)
+    if saved_value is not None:
+        if edits.value_text(text, keys) is None:
+            text = _expanded(text, keys)
+        return edits.with_value(text, keys, saved_value)
+    if edits.value_text(text, keys) is None:
+        return text
+    if isinstance(keys[-1], int):
+        default = saved.by_path.get(path)
+        text = edits.with_value(text, keys, "0" if default is None else default.text)
+        keys = keys[:-1]
+    else:
+        text = edits.without(text, keys)
+    return _abbreviated(saved.text, _without_additions(present, saved.text, text, keys), keys)
+
+
+def pose_text(place: FloatArray, *, is_point_mass: bool) -> str:
+    """Return a place (6,) as a study has it under ``pose``."""
+    position, turn = (
+        "[" + ", ".join(f"{value + 0.0:.{_POSE_DIGITS}g}" for value in part) + "]"
+        for part in np.split(place, 2)
+    )
+    if is_point_mass or not place[3:].any():
+        return position
+    return f"{{position: {position}, rotation_vector: {turn}}}"
+
+
+def _without_additions(present: Reading, saved_text: str, text: str, keys: Sequence[Key]) -> str:
+    """Return a text without what the file lacks around a path, if that says nothing new."""
+    section = present.context.read(text).section
+    for end in range(1, len(keys) + 1):
+        is_new = edits.value_text(saved_text, keys[:end]) is None
+        if is_new and edits.value_text(text, keys[:end]) is not None:
+            shorter = edits.without(text, keys[:end])
+            if section is not None and present.context.read(shorter).section == section:
+                return shorter
+    return text
+
+
+def _abbreviated(saved_text: str, text: str, keys: Sequence[Key]) -> str:
+    """Return the text with a list in place of a mapping on this path, where the file has one."""
+    for end in range(1, len(keys)):
+        outer = keys[:end]
+        value = edits.value_text(text, (*outer, _shorthand(outer)))
+        was_list = value is not None and _is_list(edits.value_text(saved_text, outer))
+        if value is not None and was_list and edits.field_count(text, outer) == 1:
+            return edits.with_value(text, outer, value)
+    return text
+
+
+def _keys_in_text(text: str, path: str) -> tuple[Key, ...]:
+    """Return where a path of the schema is in a text, where a list may stand for a mapping."""
+    keys: tuple[Key, ...] = ()
+    for key in keys_of(path):
+        if not (key == _shorthand(keys) and _is_list(edits.value_text(text, keys))):
+            keys = (*keys, key)
+    return keys
+
+
+def _expanded(text: str, keys: Sequence[Key]) -> str:
+    """Return the text with a list that stands for a mapping on this path written as that."""
+    for end in range(1, len(keys)):
+        outer = keys[:end]
+        value = edits.value_text(text, outer)
+        if value is not None and _is_list(value) and isinstance(keys[end], str):
+            return edits.with_value(text, outer, f"{{{_shorthand(outer)}: {edits.flow(value)}}}")
+    return text
+
+
+def _shorthand(keys: Sequence[Key]) -> str:
+    return _SHORTHAND.get(path_text(keys), _USUAL)
+
+
+def _is_list(value: str | None) -> bool:
+    return value is not None and value.startswith(("[", "- "))
+
+
 OnDisk = Literal["same", "changed", "gone", "never saved"]
-_DIGITS = 6
-"""Of metres: a drag sets no finer ones."""
-_MOST_STEPS = 1000
-"""Some hours of edits; each holds a text and what was read of it."""
+_DIGITS = 6  #: Of metres: a drag sets no finer ones
+MAX_STEPS = 1000  #: Some hours of edits; each holds a text and what was read of it
 
 
 @dataclass(slots=True)
@@ -49,38 +230,27 @@ class _Step:
 class Session:
     """A study on its way; used by one thread.
 
-    Parameters
-    ----------
-    text : str
-        Of the study, faulty or not.
-    context : Context
-        Where it came from, and what it is read with.
-    file : Path or None
-        Where it is saved; None for a shipped study, which is not written to.
+    ``text`` is of the study, faulty or not; ``file`` None for a shipped study, which is not written
+    to.
     """
 
     def __init__(self, text: str, context: Context, file: Path | None) -> None:
         self._context = context
-        self.file = file
-        """Where it is saved; None before that is known."""
+        self.file = file  #: Where it is saved; None before that is known
         self.rejected: dict[str, Rejected] = {}
         """Entries that were refused, by the path of their field."""
         self._saved = context.read(text)
         self._question: tuple[SessionState, Question] | None = None
         self._fields: tuple[Reading, Reading, tuple[Field, ...]] | None = None
-        place = first_place(self._saved.study)
+        place = initial_place(self._saved.study)
         self._steps = [_Step("", SessionState(self._saved, self._saved, place))]
-        self._at = 0
-        """Which of these steps was the last one; those after it were undone."""
+        self._at = 0  #: Which of these steps was the last one; those after it were undone
 
     @classmethod
     def open(cls, path: Path, plugins: Plugins) -> Self:
         """Open a study file, faulty or not; a shipped one is saved elsewhere.
 
-        Raises
-        ------
-        InputError
-            If it cannot be read, or is no text.
+        Raises InputError if it cannot be read, or is no text.
         """
         text = text_of(path)
         is_shipped = path.stem in example_names() and path == example_file(path.stem)
@@ -91,7 +261,6 @@ class Session:
 
     @property
     def state(self) -> SessionState:
-        """The present state."""
         return self._steps[self._at].state
 
     @property
@@ -131,7 +300,6 @@ class Session:
 
     @property
     def is_modified(self) -> bool:
-        """Whether the text is another than the file's."""
         return self.text != self.saved_text
 
     def question(self) -> Question | None:
@@ -153,7 +321,7 @@ class Session:
         live, saved = self.state.live, self._saved
         if self._fields is None or self._fields[:2] != (live, saved):
             ends = saved.by_path
-            fields = tuple(with_ends_of(field, ends.get(field.path)) for field in live.fields)
+            fields = tuple(with_slider_of(field, ends.get(field.path)) for field in live.fields)
             self._fields = live, saved, fields
         return self._fields[2]
 
@@ -171,17 +339,9 @@ class Session:
         """Give a field another value, as typed; return what is wrong with it, nothing if taken.
 
         What is refused is kept in `rejected`, changes nothing else, and is tried again together
-        with the next edit: of two values that hang together, one must come first.
-
-        Parameters
-        ----------
-        path : str
-            Of a `Field`.
-        typed : str
-            A text of the field; an empty one takes an optional value out.
-        continuous : bool
-            Whether this goes on with the last such edit of the same field, as one step; see
-            `settle`.
+        with the next edit: of two values that hang together, one must come first. An empty text
+        takes an optional value out. A ``continuous`` edit goes on with the last such edit of the
+        same field, as one step; see `settle`.
         """
         field = self.state.live.by_path.get(path)
         if field is None:
@@ -190,11 +350,11 @@ class Session:
         self.rejected.pop(path, None)
         if " ".join(typed.split()) == field.text:
             return ()
-        together = {**{key: entry.text for key, entry in self.rejected.items()}, path: typed}
-        reading = self._with_entries(together)
+        entries = {**{key: entry.text for key, entry in self.rejected.items()}, path: typed}
+        reading = self._with_entries(entries)
         if reading.study is not None:
             self.rejected.clear()
-        elif len(together) > 1:
+        elif len(entries) > 1:
             reading = self._with_entries({path: typed})
         if reading.study is None:
             self.rejected[path] = Rejected(typed, reading.faults)
@@ -307,13 +467,13 @@ class Session:
             live = self.state.live if reading.study is None else reading
             changes |= {"reading": reading, "live": live}
             if moves and reading.study is not None:
-                changes["place"] = first_place(reading.study)
+                changes["place"] = initial_place(reading.study)
         state, last = replace(self.state, **changes), self._steps[self._at]
         del self._steps[self._at + 1 :]
         if key is not None and last.key == key:
             last.state = state
         else:
-            self._steps = [*self._steps, _Step(label, state, key)][-_MOST_STEPS:]
+            self._steps = [*self._steps, _Step(label, state, key)][-MAX_STEPS:]
             self._at = len(self._steps) - 1
 
     def _with_entries(self, entries: dict[str, str]) -> Reading:
@@ -329,16 +489,13 @@ class Session:
 
     @property
     def undo_label(self) -> str:
-        """What would be undone; empty for nothing."""
         return self._steps[self._at].label if self._at else ""
 
     @property
     def redo_label(self) -> str:
-        """What would be done again; empty for nothing."""
         return "".join(step.label for step in self._steps[self._at + 1 :][:1])
 
     def undo(self) -> None:
-        """Take back the last step, if there is one."""
         self._go_to(max(self._at - 1, 0))
 
     def redo(self) -> None:
@@ -376,10 +533,7 @@ class Session:
     def reload(self) -> None:
         """Take what the file holds now, as a step that can be undone.
 
-        Raises
-        ------
-        InputError
-            If it cannot be read, or is no text; then nothing changes.
+        Raises InputError if it cannot be read, or is no text; then nothing changes.
         """
         text = text_of(self.path)
         self.rejected.clear()
@@ -390,10 +544,7 @@ class Session:
     def save(self) -> None:
         """Write the text to its file, whole or not at all.
 
-        Raises
-        ------
-        OutputError
-            If there is no file yet, or it cannot be written.
+        Raises OutputError if there is no file yet, or it cannot be written.
         """
         if self.file is None:
             raise OutputError(f"{self.name}: a shipped study is saved under another name")
@@ -405,10 +556,7 @@ class Session:
 
         Paths in it that are relative to where it was are rewritten for where it is.
 
-        Raises
-        ------
-        OutputError
-            If the file cannot be written; then nothing changes.
+        Raises OutputError if the file cannot be written; then nothing changes.
         """
         text = self.state.reading.moved_to(path.parent)
         write_file(path, text)

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from designer.analysis.fabrication import FabricatedCable, fabricated_cables
 from designer.documents.plain import csv_text
 from designer.exports.robot import Export, ExportedRobot
-from designer.model.drum import DEAD_TURNS
+from designer.model.winches import DEAD_TURNS
 from designer.statics.inverse import Statics
 
 ENDS = 2

@@ -22,7 +22,7 @@ from designer.foreign.robot import (
     held_at_one_point,
     largest_tension_N,
 )
-from designer.grades.proportions import LARGEST_FACTOR_OF_DOUBT
+from designer.grades.checks import LARGEST_FACTOR_OF_DOUBT
 
 ROOT = "models"
 _MASS = 25.0

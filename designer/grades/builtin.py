@@ -9,14 +9,13 @@ from functools import cache
 from hashlib import sha256
 from itertools import chain
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from platformdirs import user_cache_path
-
-from designer.grades.files import read_grades
-from designer.grades.grade import Grade
-from designer.grades.standard_rope import standard_ropes
 from designer.plugins import hookimpl
 from designer.resources import data_folder
+
+if TYPE_CHECKING:
+    from designer.grades.grade import Grade
 
 
 @hookimpl
@@ -28,6 +27,9 @@ def register_grades() -> list[Path | Grade]:
 @cache
 def _grades() -> tuple[Path | Grade, ...]:
     """Read them once; the folder itself where a file is faulty, so that the fault is told."""
+    from designer.grades.registry import read_grades
+    from designer.grades.standard_rope import standard_ropes
+
     folder = data_folder("catalog")
     kept = _kept_file(folder)
     grades = _read(kept)
@@ -45,6 +47,8 @@ def _kept_file(folder: Path) -> Path:
 
     Its name is a digest of the grade files and of all that reads them.
     """
+    from platformdirs import user_cache_path
+
     package = Path(__file__).parents[1]
     readers = (package.glob(f"{room}*.py") for room in ("", "grades/", "documents/"))
     digest = sha256()

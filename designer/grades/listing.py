@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 from statistics import median
 from typing import Any
 
-from designer.grades.grade import TRUST_MEANING, Grade, Size
-from designer.grades.parts import Units
+from designer.grades.grade import TRUST_MEANING, Grade, Size, Units
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.units import FORCE, TONS, read_quantity
 

@@ -17,8 +17,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from designer.grades import parts
-from designer.grades.grade import Grade, Size
+from designer.grades.grade import (
+    AreaFactor,
+    ComputedFigure,
+    Grade,
+    Limits,
+    Modulus,
+    Reference,
+    ReferenceArea,
+    Remark,
+    SheaveRatio,
+    Size,
+    ThermalExpansion,
+)
 
 WIRE_GRADES_MPA = (1570, 1770, 1960, 2160)
 """Tensile grades of the wires [MPa]."""
@@ -85,7 +96,7 @@ FACTORS = (
 )
 """``6x19`` and ``8x19`` are the parallel-laid ropes: Seale, filler and Warrington."""
 
-_SOURCE = parts.Reference(
+_SOURCE = Reference(
     publisher="EN 12385-4",
     document="factors K, C and W, as in K. Feyrer, Wire Ropes, table 1.9",
     url=(
@@ -96,15 +107,15 @@ _SOURCE = parts.Reference(
 _STRETCH = "https://strandcore.com/resources/technical-resources/wire-rope-stretch/"
 
 
-def _stretch_modulus(value_GPa: float, factor: str, lender: str, area: str = "") -> parts.Modulus:
+def _stretch_modulus(value_GPa: float, factor: str, lender: str, area: str = "") -> Modulus:
     """Modulus on the circle, or on the metal of an aircraft cable, which has more of it there."""
     over = f", over a metallic area of {area} d^2 (USITT, third hand)" if area else ""
     source = f"Strand Core, stretch factor G = {factor} of galvanised {lender}{over}; {_STRETCH}"
-    kind: parts.ReferenceArea = "metallic" if area else "nominal"
-    return parts.Modulus(value_GPa * 1e9, kind, "borrowed", source, 0.15)
+    kind: ReferenceArea = "metallic" if area else "nominal"
+    return Modulus(value_GPa * 1e9, kind, "borrowed", source, 0.15)
 
 
-_FIBRE_CORE = parts.Modulus(
+_FIBRE_CORE = Modulus(
     46.7e9,
     "nominal",
     "borrowed",
@@ -112,7 +123,7 @@ _FIBRE_CORE = parts.Modulus(
     "moorwire.py; https://github.com/ddjokic/Mooring-Line-Properties",
     0.15,
 )
-_ANY_ROPE = parts.Modulus(
+_ANY_ROPE = Modulus(
     103.4e9,
     "metallic",
     "borrowed",
@@ -136,11 +147,11 @@ _RATIOS = (
     "https://industrialrope.com//catalog-wire-rope/sheave-and-drum-ratios/"
 )
 _SHEAVES = {
-    "6x7": parts.SheaveRatio(72, 42, f"for 6x7: {_RATIOS}"),
-    "6x19": parts.SheaveRatio(51, 34, f"for 6x19 Seale: {_RATIOS}"),
-    "6x36 WS": parts.SheaveRatio(35, 23, f"for 6x36 WS: {_RATIOS}"),
-    "8x19": parts.SheaveRatio(41, 27, f"for 8x19 Seale: {_RATIOS}"),
-    "18x7": parts.SheaveRatio(51, 34, f"for 19x7: {_RATIOS}"),
+    "6x7": SheaveRatio(72, 42, f"for 6x7: {_RATIOS}"),
+    "6x19": SheaveRatio(51, 34, f"for 6x19 Seale: {_RATIOS}"),
+    "6x36 WS": SheaveRatio(35, 23, f"for 6x36 WS: {_RATIOS}"),
+    "8x19": SheaveRatio(41, 27, f"for 8x19 Seale: {_RATIOS}"),
+    "18x7": SheaveRatio(51, 34, f"for 19x7: {_RATIOS}"),
 }
 
 
@@ -168,8 +179,8 @@ _ROTATION_SOURCE = (
     "http://unirope.com/ropes/rotation-resistant-non-rotating-wire-rope/"
 )
 _ROTATION = {
-    "18x7": parts.Remark("category II, rotation-resistant, by its two layers", _ROTATION_SOURCE),
-    "34x7": parts.Remark("category I, non-rotating, by its three layers", _ROTATION_SOURCE),
+    "18x7": Remark("category II, rotation-resistant, by its two layers", _ROTATION_SOURCE),
+    "34x7": Remark("category I, non-rotating, by its three layers", _ROTATION_SOURCE),
 }
 _STRETCH_SOURCE = (
     "Certex UK, properties of extension of steel wire ropes; "
@@ -177,7 +188,7 @@ _STRETCH_SOURCE = (
 )
 _STRETCH_WITH_FIBRE = "0.25 % at a safety factor of 8, 0.5 % at 5, 0.75 % at 3"
 _STRETCH_WITH_STEEL = "0.125 % at a safety factor of 8, 0.25 % at 5, 0.5 % at 3"
-_LIMITS = parts.Limits(
+_LIMITS = Limits(
     temperature_C=(-40.0, 100.0),
     source="full load of wire rope slings: Certex, temperature and working load limit; "
     "https://www.certex.lv/en/technical-information/steel-wire-rope-slings/"
@@ -225,23 +236,21 @@ def standard_rope(
         material="steel",
         standard="EN 12385-4",
         wire_grade=f"{wire_grade_MPa} N/mm2",
-        area_factor=parts.AreaFactor(factors.metallic_area, "printed", "factor C of EN 12385-4"),
-        thermal_expansion=parts.ThermalExpansion(
+        area_factor=AreaFactor(factors.metallic_area, "printed", "factor C of EN 12385-4"),
+        thermal_expansion=ThermalExpansion(
             12.5e-6, "borrowed", "Metalico, data sheet of galvanised messenger strand"
         ),
         sheave_ratio=_SHEAVES.get(construction),
         limits=_LIMITS,
         rotation=_ROTATION.get(construction),
-        permanent_stretch=parts.Remark(
+        permanent_stretch=Remark(
             _STRETCH_WITH_FIBRE if core == "FC" else _STRETCH_WITH_STEEL, _STRETCH_SOURCE
         ),
         discard=_discard(construction),
         computed=(
-            parts.ComputedFigure(
-                "minimum_breaking_load", f"K d^2 Rr, K = {factors.breaking_force:.3f}"
-            ),
-            parts.ComputedFigure("linear_mass", f"W d^2, W = {factors.mass:.3f} kg/(100 m mm2)"),
-            parts.ComputedFigure("metallic_area", f"C d^2, C = {factors.metallic_area:.3f}"),
+            ComputedFigure("minimum_breaking_load", f"K d^2 Rr, K = {factors.breaking_force:.3f}"),
+            ComputedFigure("linear_mass", f"W d^2, W = {factors.mass:.3f} kg/(100 m mm2)"),
+            ComputedFigure("metallic_area", f"C d^2, C = {factors.metallic_area:.3f}"),
         ),
         notes=(
             "Nominal: computed by the standard's factors, not a product.",
@@ -259,16 +268,16 @@ def standard_ropes() -> Iterator[Grade]:
             yield standard_rope(factors, wire_grade_MPa)
 
 
-def _discard(construction: str) -> parts.Remark | None:
+def _discard(construction: str) -> Remark | None:
     if construction not in _WIRE_BREAKS:
         return None
     short, long = _WIRE_BREAKS[construction]
     duty = "" if construction in _ROTATION else ", regular lay, M1 to M4 or class unknown"
     text = f"{short} visible broken wires over 6 d or {long} over 30 d, on steel sheaves and "
-    return parts.Remark(f"{text}single-layer drums{duty}", _BREAKS_SOURCE)
+    return Remark(f"{text}single-layer drums{duty}", _BREAKS_SOURCE)
 
 
-def _modulus(factors: Factors) -> parts.Modulus:
+def _modulus(factors: Factors) -> Modulus:
     interval = _MODULI.get((factors.construction, factors.core))
     if interval is not None:
         return interval

@@ -41,33 +41,18 @@ MOST_POSES = 50_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PoseTable:
-    """Poses of a file.
+    """Poses of a file."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        Its columns of numbers, in the order of the file.
-    values : array (n_poses, n_names)
-        What stands there; NaN for nothing in columns that are none of ours.
-    places : array (n_poses, 3 or 6)
-        Positions, and rotation vectors where the file has them [m, rad].
-    load_cases : tuple of str
-        The load case that each pose is for, empty for all; none without that column.
-    left_out : tuple of str
-        Columns that hold texts.
-    sha256 : str
-        Digest of the file's bytes.
-    log : LogTable
-        As it was read, which tells the line of a fault.
-    """
-
-    names: tuple[str, ...]
+    names: tuple[str, ...]  #: Its columns of numbers, in the order of the file
+    #: (n_poses, n_names): What stands there; NaN for nothing in columns that are none of ours
     values: FloatArray
+    #: (n_poses, 3 or 6): Positions, and rotation vectors where the file has them [m, rad]
     places: FloatArray
+    #: The load case that each pose is for, empty for all; none without that column
     load_cases: tuple[str, ...] = ()
-    left_out: tuple[str, ...] = ()
-    sha256: str = ""
-    log: LogTable | None = None
+    left_out: tuple[str, ...] = ()  #: Columns that hold texts
+    sha256: str = ""  #: Digest of the file's bytes
+    log: LogTable | None = None  #: As it was read, which tells the line of a fault
 
     @property
     def poses(self) -> Poses:

@@ -14,7 +14,7 @@ from designer.documents.bounds import BOUNDS, Bound
 from designer.documents.opened import open_input, reason
 from designer.errors import Fault, InputError
 from designer.measured.table import cells_of
-from designer.model.price_list import Offer, PriceList
+from designer.model.cable import Offer, PriceList
 from designer.spelling import did_you_mean
 from designer.units import LENGTH, QuantityError, read_quantity
 

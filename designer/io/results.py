@@ -19,13 +19,13 @@ from designer.diagnosis.result import Diagnosis, effects_table
 from designer.documents import document
 from designer.documents.document import DEEPEST_NESTING, Flaw, Keys
 from designer.documents.edits import scalar, with_section, with_value
+from designer.documents.fields import MOST_FAULTS
 from designer.documents.opened import read_input
 from designer.documents.plain import RESULT_FORMAT, Json, why_unreadable
-from designer.documents.section import MOST_FAULTS
 from designer.errors import Fault, InputError
 from designer.io.config.moved import moved_to, path_from
 from designer.io.output import write_whole
-from designer.model.measured_data import KINDS
+from designer.model.measurements import KINDS
 from designer.units import describe
 
 _RESULT = "a result.json that `designer report` wrote"

@@ -16,8 +16,7 @@ from scipy.spatial.transform import Rotation
 from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.errors import Fault
 from designer.measured.table import LogTable, RawColumn
-from designer.model.coordinates import Coordinates
-from designer.model.measurements import POSES, LogColumn, Measurements
+from designer.model.measurements import POSES, Coordinates, LogColumn, Measurements
 from designer.spelling import did_you_mean
 from designer.study import Study
 from designer.units import (

@@ -38,8 +38,7 @@ from designer.measured.rows import (
 )
 from designer.measured.sense import sense_faults, unit_faults
 from designer.measured.table import LogTable, is_bag, read_bag, read_table
-from designer.model.measured_data import KINDS, Measured
-from designer.model.measurements import Measurements
+from designer.model.measurements import KINDS, Measured, Measurements
 from designer.model.robot import Poses
 from designer.study import Study
 

@@ -13,7 +13,7 @@ from designer.arrays import FloatArray
 from designer.errors import Fault
 from designer.measured.assign import POSITION, TEMPERATURE_NAME, length_names, tension_names
 from designer.measured.table import LogTable
-from designer.model.measured_data import Measured
+from designer.model.measurements import Measured
 from designer.model.robot import Poses, Robot
 from designer.statics.geometry import cable_geometry
 

@@ -1,4 +1,4 @@
-"""Frozen values of a cable and of a continuous family of cables."""
+"""Frozen values of a cable, of a continuous family of cables, and of what ropes cost."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
@@ -34,18 +35,10 @@ Unlimited = Annotated[float, checked.Number(above=0.0, finite=False)]
 
 @dataclass(frozen=True, slots=True)
 class Stiffening:
-    """EA of a rope that depends on its tension: linear between the points, constant beyond.
+    """EA of a rope that depends on its tension: linear between the points, constant beyond."""
 
-    Parameters
-    ----------
-    tension_N : tuple of float
-        Tensions, ascending [N].
-    axial_stiffness_N : tuple of float
-        EA at each of them [N].
-    """
-
-    tension_N: tuple[float, ...]
-    axial_stiffness_N: tuple[float, ...]
+    tension_N: tuple[float, ...]  #: Tensions, ascending [N]
+    axial_stiffness_N: tuple[float, ...]  #: EA at each of them [N]
 
     def at(self, tension_N: float) -> float:
         """Return EA at a tension [N]."""
@@ -66,18 +59,11 @@ class Stiffening:
 
 @dataclass(frozen=True, slots=True)
 class Attached(checked.Value):
-    """What is clipped along a cable, such as a power line or a hose: it weighs, and bears nothing.
+    """What is clipped along a cable, such as a hose: it weighs, and bears nothing."""
 
-    Parameters
-    ----------
-    linear_density_kg_per_m : float
-        Its mass per unstrained length of the cable [kg/m].
-    diameter_m : float
-        Its diameter, in wind and ice [m].
-    """
-
+    #: Its mass per unstrained length of the cable [kg/m]
     linear_density_kg_per_m: checked.NotNegative = 0.0
-    diameter_m: checked.NotNegative = 0.0
+    diameter_m: checked.NotNegative = 0.0  #: Its diameter, in wind and ice [m]
 
 
 AttachedEach = tuple[Attached, ...]
@@ -104,7 +90,7 @@ class Cable:
         Strain per change of temperature [1/K].
     stiffening : Stiffening or None
         How EA depends on the tension; None where it does not. ``axial_stiffness_N`` is then one
-        value of it, which `designer.selection.stiffening` takes at the largest tension met.
+        value of it, which `designer.selection.cases` takes at the largest tension met.
     attached : tuple of Attached
         What is clipped along it, see `AttachedEach`; all other figures but the mass are those of
         the rope alone.
@@ -188,17 +174,11 @@ class Cables:
 
     Its figures have the names of those of a `Cable`, as arrays (n_cables,), or (n_poses, 1), or
     (n_poses, n_cables) where what is attached to the cables differs.
-
-    Parameters
-    ----------
-    each : sequence of Cable
-        One for each exit point, in that order; or those that ``of_pose`` counts.
-    of_pose : array (n_poses,) or None
-        Which of them is on all winches in each pose.
     """
 
+    #: One for each exit point, in that order; or those that ``of_pose`` counts
     each: Sequence[Cable]
-    of_pose: IntArray | None = None
+    of_pose: IntArray | None = None  #: (n_poses,): Which of them is on all winches in each pose
     linear_density_kg_per_m: FloatArray = field(init=False)
     weight_N_per_m: FloatArray = field(init=False)
     axial_stiffness_N: FloatArray = field(init=False)
@@ -289,3 +269,58 @@ class Material(checked.Value):
     def diameter_for_tension_m(self, tension_N: float) -> float:
         """Return the diameter that carries ``tension_N`` at the allowable stress [m]."""
         return math.sqrt(4.0 * tension_N / (math.pi * self.allowable_stress_Pa))
+
+
+_SAME_DIAMETER = 2e-3
+"""Relative: 9.53 mm is the size of 3/8 in, and no grade has two sizes so near."""
+
+
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """The price of a metre of one size, of a date such as ``2026-03`` or ``2026-03-31``.
+
+    The size is named by its id, or by its diameter [m] where ``size_id`` is empty. ``line`` is
+    that of the list's file.
+    """
+
+    grade: str
+    size_id: str
+    diameter_m: float
+    price_per_m: float
+    date: str
+    line: int
+
+    @property
+    def size(self) -> str:
+        """The size as a message names it."""
+        return self.size_id or f"{self.diameter_m * 1e3:g} mm"
+
+    def is_for(self, size_id: str, diameter_m: float) -> bool:
+        """Tell whether it is for a size of its grade."""
+        if self.size_id:
+            return self.size_id.casefold() == size_id.casefold()
+        return math.isclose(self.diameter_m, diameter_m, rel_tol=_SAME_DIAMETER)
+
+
+@dataclass(frozen=True, slots=True)
+class PriceList:
+    """Offers in one currency, from a file."""
+
+    path: Path
+    currency: str
+    offers: tuple[Offer, ...]
+
+    @property
+    def name(self) -> str:
+        """The file's name without its folder."""
+        return self.path.name
+
+    @property
+    def dates(self) -> tuple[str, str]:
+        """The earliest and the latest date."""
+        dates = [offer.date for offer in self.offers]
+        return min(dates), max(dates)
+
+    def offers_of(self, grade: str) -> tuple[Offer, ...]:
+        """Return the offers of one grade."""
+        return tuple(offer for offer in self.offers if offer.grade == grade)

@@ -30,7 +30,53 @@ from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.region import Region
 from designer.model.robot import Platform, Robot
 from designer.model.space import Orientations
-from designer.model.wrench_set import WrenchSet
+
+MOST_WRENCHES = 64
+"""The corners of a box in all six parts of a wrench."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WrenchSet(checked.Value):
+    """Wrenches on a platform, of which any one may act."""
+
+    #: (n, 6): As `Platform.wrench_N`, each for itself; of a box its corners [N, N·m]
+    wrenches_N: Annotated[FloatArray, checked.Shape((None, 6))]
+    is_box: bool = False  #: Whether all wrenches between them may act as well, each part for itself
+
+    def __post_init__(self) -> None:
+        checked.check_fields(self)
+        if not 1 <= len(self.wrenches_N) <= MOST_WRENCHES:
+            raise ValueError(f"a set has 1 to {MOST_WRENCHES} wrenches, not {len(self.wrenches_N)}")
+
+    @classmethod
+    def between(cls, first_N: FloatArray, last_N: FloatArray) -> WrenchSet:
+        """Return the box between two wrenches (6,), by its corners."""
+        ends = [sorted({float(a), float(b)}) for a, b in zip(first_N, last_N, strict=True)]
+        return cls(np.array(list(product(*ends))), is_box=True)
+
+    @property
+    def bounds_N(self) -> FloatArray:
+        """Least and greatest of each part (2, 6)."""
+        return np.array([self.wrenches_N.min(axis=0), self.wrenches_N.max(axis=0)])
+
+    def scaled(self, factor: float) -> WrenchSet:
+        """Return the same, so many times as large."""
+        return replace(self, wrenches_N=factor * self.wrenches_N)
+
+    def beside(self, wrench_N: FloatArray, step: float) -> Iterator[FloatArray]:
+        """Yield the wrenches of a box by a step, of half its width, from one (6,) of them."""
+        if not self.is_box:
+            return
+        lower, upper = self.bounds_N
+        for part in np.flatnonzero(upper > lower):
+            for along in (-step, step):
+                moved = wrench_N[part] + 0.5 * along * (upper - lower)[part]
+                moved = min(max(moved, lower[part]), upper[part])
+                if moved != wrench_N[part]:
+                    other = wrench_N.copy()
+                    other[part] = moved
+                    yield other
+
 
 AIR_DENSITY_KG_PER_M3 = 1.25
 """EN 1991-1-4, 4.5; of every wind in this program, measured or assumed [kg/m³]."""
@@ -104,33 +150,17 @@ class Ice(checked.Value):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Loaded:
-    """A robot and its cables under one load case, in one direction of wind and inertia.
-
-    Parameters
-    ----------
-    case : LoadCase
-        The case.
-    bare : tuple of Robot and Cable
-        What it was put on.
-    robot : Robot
-        With what acts on the platform, and the direction of the load on its cables.
-    cable : Cable
-        With the load per length in place of its weight.
-    wind, inertia : array (3,) or None
-        Unit vectors of where the wind blows to and the inertia force points, world frame.
-    lost_cable : int or None
-        The cable that is gone, from 1; the robot above still has it.
-    wrench_N : array (6,) or None
-        That of the case's set of wrenches, without the dynamic factor [N, N·m].
-    """
+    """A robot and its cables under one load case, in one direction of wind and inertia."""
 
     case: LoadCase
-    bare: tuple[Robot, Cable]
-    robot: Robot
-    cable: Cable
+    bare: tuple[Robot, Cable]  #: What it was put on
+    robot: Robot  #: With what acts on the platform, and the direction of the load on its cables
+    cable: Cable  #: With the load per length in place of its weight
+    #: (3,): Unit vectors of where the wind blows to and the inertia force points, world frame
     wind: FloatArray | None = None
     inertia: FloatArray | None = None
-    lost_cable: int | None = None
+    lost_cable: int | None = None  #: The cable that is gone, from 1; the robot above still has it
+    #: (6,): That of the case's set of wrenches, without the dynamic factor [N, N·m]
     wrench_N: FloatArray | None = None
 
     @property

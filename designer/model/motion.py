@@ -52,26 +52,17 @@ _APART = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class Motion(checked.Value):
-    """Instants of a motion; at any other position the platform is at rest.
+    """Instants of a motion; at any other position the platform is at rest."""
 
-    Parameters
-    ----------
-    time_s : array (n_instants,)
-        Rising [s].
-    positions_m, rotation_vectors_rad : array (n_instants, 3)
-        Of the platform's frame, world frame; no two positions alike [m, rad].
-    velocity, acceleration : array (n_instants, 6)
-        Of the origin of the platform's frame, and angular, along world axes [m/s, rad/s; per s].
-    words : str
-        Where it comes from, and how it is interpolated and timed.
-    """
-
-    time_s: FloatArray
+    time_s: FloatArray  #: (n_instants,): Rising [s]
+    #: (n_instants, 3): Of the platform's frame, world frame; no two positions alike [m, rad]
     positions_m: checked.Points
     rotation_vectors_rad: checked.Points
+    #: (n_instants, 6): Of the origin of the platform's frame, and angular, along world axes [m/s,
+    #: rad/s; per s]
     velocity: FloatArray
     acceleration: FloatArray
-    words: str = ""
+    words: str = ""  #: Where it comes from, and how it is interpolated and timed
 
     @property
     def places(self) -> FloatArray:

@@ -1,7 +1,8 @@
-"""Frozen values of a robot, its platform and its poses."""
+"""Frozen values of a robot, its platform, its poses, and the machine as it is built."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Annotated
@@ -12,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from designer import checked
 from designer.arrays import BoolArray, FloatArray, IntArray, frozen_array
-from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, AttachedEach
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, AttachedEach, Cable, Cables
 from designer.model.motion import Motion
 from designer.model.winches import Winches
 
@@ -446,3 +447,63 @@ class Poses:
         """Return the attachment points in the world frame (..., n_cables, 3) [m]."""
         levers = np.einsum("...ij,nj->...ni", self.rotation, robot.attachments_m)
         return np.asarray(self.position_m[..., None, :] + levers, dtype=np.float64)
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What is around the machine, for effects whose law asks for it.
+
+    A design takes those that the study declares. Where data are compared with the machine, each
+    row has its own, which effects on readings are given.
+    """
+
+    temperature_C: float = 20.0  #: Temperature of the cables [°C]
+
+
+TEMPERATE = Surroundings()
+"""20 °C, at which lengths are counted."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Machine:
+    """A robot with its cables, and what acts on it beside gravity."""
+
+    robot: Robot  #: Exit points, pulleys, platform, tilt
+    cable: Cable  #: The cable that is on the machine, the same on every winch
+    drag_area_m2: float = 0.0  #: Drag coefficient times area of the platform, C_d A [m²]
+    #: EI of the cable, clamped at both ends along its chord [N·m²]
+    flexural_rigidity_N_m2: float = 0.0
+    surroundings: Surroundings = TEMPERATE  #: As the study declares them
+    #: Mass that is on the platform from a time on [kg], [s]; no design has it
+    late_load_kg: float = 0.0
+    late_load_from_s: float = 0.0
+    #: (n_cables,): Mass per length and EA of each cable over those of ``cable``; None where all are
+    #: alike. No design has them.
+    relative_mass: FloatArray | None = None
+    relative_stiffness: FloatArray | None = None
+    #: Mass of the rope on the machine over the circle of its diameter, which tells its material;
+    #: NaN where nothing tells it [kg/m³]
+    rope_density_kg_per_m3: float = math.nan
+
+    @property
+    def cables(self) -> Cable | Cables:
+        """The cable that is on all winches, or what is on each where they differ.
+
+        With what is attached along it, of which the effects know nothing.
+        """
+        attached = self.robot.attached
+        if self.relative_mass is None and self.relative_stiffness is None:
+            return self.cable.with_attached(attached)
+        mass, stiffness = (
+            np.ones(self.robot.n_cables) if share is None else share
+            for share in (self.relative_mass, self.relative_stiffness)
+        )
+        return Cables(
+            [
+                replace(
+                    self.cable.with_attached(attached).with_rope_scaled(m),
+                    axial_stiffness_N=self.cable.axial_stiffness_N * s,
+                )
+                for m, s in zip(mass.tolist(), stiffness.tolist(), strict=True)
+            ]
+        )

@@ -1,14 +1,94 @@
-"""What became of a pose: solved, or why not."""
+"""What became of a pose, what a study asks for, and the answer that follows from all of it."""
 
 from __future__ import annotations
 
-from enum import IntEnum
-from typing import Self
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from enum import IntEnum, StrEnum
+from typing import ClassVar, Self
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, VerdictArray
-from designer.model.requirement import State
+from designer.model.load_case import Loaded
+from designer.model.space import named_place
+from designer.spelling import digits
+
+
+class State(StrEnum):
+    """Whether a requirement holds; ``OPEN`` where neither that nor the opposite is known."""
+
+    HOLDS = "holds"
+    FAILS = "fails"
+    OPEN = "open"
+
+
+class Answer(StrEnum):
+    """The answer to a study: yes if all requirements hold, no if one fails, else open."""
+
+    YES = "yes"
+    NO = "no"
+    OPEN = "open"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Requirement:
+    """One thing that a study asks for, in one load case, where it comes nearest to failing."""
+
+    id: str  #: Its name in result files
+    #: What is required, how it is evaluated, and by which clause or field of the study
+    title: str = field(metadata={"json": None})
+    formula: str
+    source: str
+    state: State  #: Whether it holds
+    load_case: str  #: In which load case; ``all`` for what no load case changes
+    #: What is required, and what there is [unit]; NaN where there is no such figure
+    demand: float = math.nan
+    capacity: float = math.nan
+    unit: str = ""  #: SI; empty for a ratio
+    #: Up to 1 where it holds; NaN where the two figures make no ratio
+    utilisation: float = math.nan
+    cable: int | None = None  #: The cable, from 1
+    #: (n_coordinates,): Where the platform is, see `designer.model.space` [m, rad]
+    place: FloatArray | None = field(default=None, metadata={"json": named_place})
+    #: Robot and cable under the load case, in its direction of wind and inertia force
+    loaded: Loaded | None = field(
+        default=None,
+        metadata={"json": lambda loaded: {"direction": (loaded and loaded.words) or None}},
+    )
+    remark: str = ""  #: What the reader must know beside the figures; empty for nothing
+
+    also_in_files: ClassVar = ("holds",)
+
+    @property
+    def holds(self) -> bool:
+        """Whether it is known to hold."""
+        return self.state is State.HOLDS
+
+    @property
+    def direction(self) -> str:
+        """Direction of wind and inertia force, or the lost cable, in words; empty for none."""
+        return "" if self.loaded is None else self.loaded.words
+
+    @property
+    def words(self) -> str:
+        """State and figures in a line, such as ``fails: demand 28, capacity 25.2``."""
+        figures = [
+            f"{name} {digits(value)} {self.unit}".rstrip()
+            for name, value in (("demand", self.demand), ("capacity", self.capacity))
+            if math.isfinite(value)
+        ]
+        said = ", ".join(filter(None, [*figures, self.remark]))
+        return f"{self.state.value}: {said}" if said else self.state.value
+
+
+def answer_of(requirements: Iterable[Requirement]) -> Answer:
+    """Return what follows from all requirements: a failing one decides, then an open one."""
+    states = {requirement.state for requirement in requirements}
+    if State.FAILS in states:
+        return Answer.NO
+    return Answer.OPEN if State.OPEN in states else Answer.YES
 
 
 class Verdict(IntEnum):

@@ -19,10 +19,10 @@ from designer.arrays import FloatArray, frozen_array
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.load_case import STATIC, Loaded
-from designer.model.point_list import PointList
-from designer.model.requirement import Requirement
+from designer.model.region import PointList
 from designer.model.robot import Poses
 from designer.model.space import Space
+from designer.model.verdict import Requirement
 from designer.model.workspace import Workspace
 from designer.progress import SILENT
 from designer.selection.candidate import Candidate, candidates_of, undominated

@@ -29,13 +29,18 @@ from designer.documents.document import (
     path_text,
     read_document,
 )
-from designer.documents.fields import FreeMapping, QuantityField, Text, WholeNumber
+from designer.documents.fields import (
+    FreeMapping,
+    QuantityField,
+    Section,
+    Text,
+    WholeNumber,
+    schema_faults,
+)
 from designer.documents.opened import read_bytes
-from designer.documents.section import Section, schema_faults
 from designer.errors import Fault, InputError
 from designer.io.config.schema import StudySection
-from designer.model.prism import Prism
-from designer.model.rectangle import Rectangle
+from designer.model.region import Prism, Rectangle
 from designer.optimum.measures import MEASURES, Measure, for_study, measure_at
 from designer.selection.candidate import common_currency
 from designer.selection.prices import offered, with_prices

@@ -26,8 +26,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.documents.plain import Json
 from designer.grades.grade import Grade
-from designer.model.requirement import State
-from designer.model.verdict import Verdict
+from designer.model.verdict import State, Verdict
 from designer.optimum.measures import Measure, NotHeldError, Quick, shortfall
 from designer.optimum.plan import Limit, OptimisationPlan, Values
 from designer.progress import Advance

@@ -13,7 +13,7 @@ from designer.arrays import frozen_array
 from designer.kernel.batch import refuse_batch
 from designer.kernel.calling import situation_of
 from designer.model.cable import Cable
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.proof.encloser import Encloser, covers_of

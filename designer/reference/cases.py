@@ -16,7 +16,7 @@ import numpy as np
 from designer.arrays import FloatArray, frozen_array
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2 as GRAVITY
 from designer.model.cable import Material
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
 from designer.physics import catenary

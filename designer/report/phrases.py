@@ -22,8 +22,8 @@ from designer.analysis.maps import Served, WorkspaceMaps
 from designer.arrays import FloatArray
 from designer.grades.grade import Grade
 from designer.model.region import Region
-from designer.model.requirement import Requirement, State
 from designer.model.space import Orientations
+from designer.model.verdict import Requirement, State
 from designer.report import format as fmt
 from designer.report.figures.colours import DIAMETER, RATIO
 from designer.selection.assignment import Assignment

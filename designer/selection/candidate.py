@@ -16,7 +16,7 @@ from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable, SizeUnits
 from designer.model.load_case import STATIC
-from designer.model.requirement import Requirement
+from designer.model.verdict import Requirement
 from designer.selection.cases import CaseResult, governing
 from designer.selection.efficiency import Allowance
 from designer.selection.objectives import UNKNOWN, CandidateFigures
@@ -189,7 +189,7 @@ def undominated(
     not dearer. Weight and stiffness are what a cable loads the others with; so what holds with the
     beaten rope holds with the better one, as a rule. Of equal ropes the first one stays.
 
-    Stiffness is that of the cable as it is, see `designer.selection.stiffening`; with
+    Stiffness is that of the cable as it is, see `designer.selection.cases`; with
     ``at_any_tension`` a rope beats another only where it is not stiffer whatever either meets.
     """
     figures = np.array([_burdens(c.cable, c.size, by_price) for c in candidates]).reshape(-1, 4)

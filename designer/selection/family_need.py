@@ -20,7 +20,7 @@ from designer.model.cable import Cable, Material
 from designer.model.load_case import LoadCase
 from designer.model.workspace import Workspace
 from designer.progress import Reporter
-from designer.selection.cases import CaseResult, Cases, governing, searched_all
+from designer.selection.cases import CaseResult, Cases, governing, refine_all
 from designer.study import Study
 from designer.workspace.section import FIRST_TRIED_M, thinnest_that
 
@@ -91,7 +91,7 @@ def family_need(
         (results,) = cases.sampled([[cable(diameter_m)]], lambda _: None)
         worst = governing(results)
         if worst.verification.holds:
-            worst = governing(searched_all(results))
+            worst = governing(refine_all(results))
         # Of the first trial the pose counts, whether it holds there or not.
         if section_m > 0.0 and worst.utilisation <= 1.0 + _SAME:
             return CaseNeed(section_m, worst)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from designer.grades.grade import Grade
-from designer.model.price_list import Offer
+from designer.model.cable import Offer
 from designer.selection.candidate import common_currency
 from designer.study import Selection
 

@@ -19,12 +19,11 @@ from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
-from designer.model.requirement import Requirement, State
 from designer.model.robot import Poses, Robot
-from designer.model.verdict import Verdict
+from designer.model.verdict import Requirement, State, Verdict
 from designer.model.workspace import Workspace
 from designer.progress import Advance, steps
-from designer.selection.cases import CaseResult, steepest, worst_of_each
+from designer.selection.cases import CaseResult, governing_directions, worst_load_direction
 from designer.selection.criteria import ROUNDING, WHERE, Criterion
 from designer.selection.rope_class import SOURCE, least_sheave_ratio
 from designer.statics.cable_loss import Fate
@@ -176,7 +175,7 @@ def _turned(
         def severity_of(other: Loaded, place: FloatArray = place) -> float:
             return float(_severity(other, workspace, [criterion], place[None])[0, 0])
 
-        loaded, severity = steepest(loaded, extreme.demand, severity_of)
+        loaded, severity = worst_load_direction(loaded, extreme.demand, severity_of)
         # A search for the pose takes long there; between single points there is nowhere to climb.
         if loaded.keeps_lengths or (workspace.space.is_discrete and not again.rounds):
             break
@@ -271,7 +270,7 @@ def extreme_lengths_m(loads: CaseLoads) -> tuple[FloatArray, FloatArray]:
 
 def strength_of(cases: Sequence[CaseResult], selection: Selection) -> Iterator[Requirement]:
     """Yield whether every pose is in equilibrium, and the breaking load, in each load case."""
-    for result in worst_of_each(cases):
+    for result in governing_directions(cases):
         yield equilibrium_of(result)
         if math.isfinite(result.utilisation):
             yield _breaking_load(result, selection)

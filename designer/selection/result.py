@@ -9,9 +9,8 @@ from typing import ClassVar, Literal
 
 from designer import checked
 from designer.grades.grade import Grade, Size
-from designer.model.cable import Material, Preference
+from designer.model.cable import Material, Preference, PriceList
 from designer.model.load_case import STATIC
-from designer.model.price_list import PriceList
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.selection.candidate import Candidate, Standing

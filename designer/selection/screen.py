@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from designer.model.requirement import Requirement, State
+from designer.model.verdict import Requirement, State
 from designer.progress import Reporter
 from designer.selection.candidate import Candidate
 from designer.selection.criteria import Criterion

@@ -29,13 +29,14 @@ from designer.selection.candidate import (
 from designer.selection.cases import (
     CaseResult,
     Cases,
-    as_stiff_as,
+    envelope,
     governing,
+    governing_directions,
+    prove_governing,
+    refine_all,
+    refine_governing,
     resettled,
-    searched,
-    searched_all,
-    together,
-    worst_of_each,
+    with_stiffness_of,
 )
 from designer.selection.compare import best_of, may_win, settle, settle_standing
 from designer.selection.continuous import ContinuousOptimum, continuous_optima
@@ -43,7 +44,6 @@ from designer.selection.criteria import criteria_of
 from designer.selection.efficiency import Allowance, why_not_bent
 from designer.selection.objectives import MEANINGS, CandidateFigures
 from designer.selection.prices import offered, with_prices
-from designer.selection.proven import prove_governing
 from designer.selection.requirements import sheave_ratio_of
 from designer.selection.result import GradeOutcome, NotTried, Outcome, SelectionResult
 from designer.selection.screen import Screen
@@ -81,7 +81,7 @@ def select(
     grades, price_estimate = with_prices(grades, selection)
     excluded = [(g, why) for g in grades if (why := g.why_excluded(selection))]
     allowed = [g for g in grades if g.why_excluded(selection) is None]
-    cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
+    cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).with_coarse_sampling()
     run = _SelectionRun(
         cases, selection, built or AsBuilt(robot), allowed, reporter or SILENT, proof_s, explains
     )
@@ -125,7 +125,7 @@ def best_product(
     None where nothing holds.
     """
     allowed = offered(grades, selection)
-    cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
+    cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).with_coarse_sampling()
     run = _SelectionRun(cases, selection, built or AsBuilt(robot), allowed, explains=False)
     front, _ = run.choose(run.sampled(allowed))
     return front[0] if front else None
@@ -292,8 +292,8 @@ class _SelectionRun:
                 proof, cases = prove_governing(settled, Budget(self.proof_s), lambda _: None)
             candidate.cases = cases
         self.proofs[candidate] = proof
-        candidate.cable = as_stiff_as(candidate.cable, governing(candidate.cases))
-        candidate.verification = together(candidate.cases)
+        candidate.cable = with_stiffness_of(candidate.cable, governing(candidate.cases))
+        candidate.verification = envelope(candidate.cases)
         tension_N = candidate.verification.max_tension_N
         candidate.figures = replace(candidate.figures, max_tension_N=tension_N)
         return proof.worst is not None
@@ -306,20 +306,20 @@ class _SelectionRun:
         Where each governs and near there; of those in ``thorough`` in every load case.
         """
         in_batch = [c for c in candidates if c not in thorough]
-        cases = dict(zip(in_batch, searched([c.cases for c in in_batch]), strict=True))
+        cases = dict(zip(in_batch, refine_governing([c.cases for c in in_batch]), strict=True))
         for candidate in candidates:
-            candidate.cases = cases.get(candidate) or searched_all(candidate.cases)
-            candidate.cable = as_stiff_as(candidate.cable, governing(candidate.cases))
+            candidate.cases = cases.get(candidate) or refine_all(candidate.cases)
+            candidate.cable = with_stiffness_of(candidate.cable, governing(candidate.cases))
             if "stiffness" in self.selection.objectives:
                 self._add_stiffness(candidate, searched=True)
-        return [together(candidate.cases) for candidate in candidates]
+        return [envelope(candidate.cases) for candidate in candidates]
 
     def sampled(self, grades: Sequence[Grade]) -> list[Candidate]:
         """Solve all samples with all sizes that the sheave allows."""
         candidates = candidates_of(self.selection, grades, self.built)
         cables = [
             [c.cable for c in candidates_of(self.selection.under(case), grades, self.built)]
-            for case in self.cases.each
+            for case in self.cases.load_cases
         ]
         count = self.cases.sample_count * self.cases.passes(cables)
         with self.reporter.task("sizes", count) as advance:
@@ -336,14 +336,14 @@ class _SelectionRun:
 
     def _meets(self, candidate: Candidate, cases: tuple[CaseResult, ...]) -> None:
         """Note what a candidate meets over the samples, its figures, whether the sheave fits."""
-        verification = together(cases)
+        verification = envelope(cases)
         if not math.isfinite(verification.utilisation):  # lengths of other poses mean nothing
             verification = replace(
                 verification, longest_m=np.full_like(verification.longest_m, np.nan)
             )
         length_m, ratio = float(verification.longest_m.sum()), candidate.grade.sheave_ratio
         candidate.cases, candidate.verification = cases, verification
-        candidate.cable = as_stiff_as(candidate.cable, governing(cases))
+        candidate.cable = with_stiffness_of(candidate.cable, governing(cases))
         candidate.figures = CandidateFigures(
             mass_kg=candidate.cable.rope_density_kg_per_m * length_m,
             cost=cost(candidate, length_m, self.currency),
@@ -370,7 +370,7 @@ class _SelectionRun:
         for candidate in candidates:
             settle_standing(candidate, front, self.selection.objectives)
             candidate.requirements = self.screen.requirements(candidate)
-            candidate.cases = worst_of_each(candidate.cases)
+            candidate.cases = governing_directions(candidate.cases)
         return GradeOutcome(
             grade=grade,
             family=optimum.family,

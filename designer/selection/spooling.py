@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from designer.arrays import FloatArray
-from designer.model.drum import Drum
-from designer.model.requirement import Requirement, State
+from designer.model.verdict import Requirement, State
+from designer.model.winches import Drum
 
 
 @dataclass(frozen=True, slots=True)

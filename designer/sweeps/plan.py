@@ -33,9 +33,16 @@ from designer.documents.document import (
     path_text,
     read_document,
 )
-from designer.documents.fields import FreeMapping, Text, WholeNumber, different, list_of
+from designer.documents.fields import (
+    FreeMapping,
+    Section,
+    Text,
+    WholeNumber,
+    different,
+    list_of,
+    schema_faults,
+)
 from designer.documents.plain import Json
-from designer.documents.section import Section, schema_faults
 from designer.effects.load import load_effects
 from designer.effects.registry import KnownEffects
 from designer.errors import DesignerError, Fault, InputError, described

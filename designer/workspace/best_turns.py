@@ -20,7 +20,7 @@ from designer.arrays import FloatArray, frozen_array
 from designer.model.cable import Material
 from designer.model.region import Region
 from designer.model.robot import Poses, Robot
-from designer.model.turning import Following, TurnTable
+from designer.model.space import Following, TurnTable
 from designer.model.workspace import HangsBelow
 from designer.sizing.newton import size_poses
 from designer.spelling import vector

@@ -17,8 +17,8 @@ from pairs.table import analysed
 
 from designer.explore.session import Session
 from designer.model.cable import Attached
-from designer.model.drum import Drum
-from designer.model.requirement import Answer
+from designer.model.verdict import Answer
+from designer.model.winches import Drum
 from designer.plugins import find_plugins
 from designer.report.design.report import design_report
 from designer.report.render import render_html

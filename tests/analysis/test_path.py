@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from designer.analysis.analyse import Analysis
 from designer.analysis.path_case import PathCase
 from designer.model.motion import Motion, limited, timed, unwrapped
-from designer.model.requirement import State
+from designer.model.verdict import State
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
 from designer.report.render import rendered

@@ -23,10 +23,10 @@ from designer.analysis.result_json import result_dict
 from designer.io.config import read_study
 from designer.model.cable import Cable
 from designer.model.load_case import STATIC, LoadCase
-from designer.model.prism import Prism
-from designer.model.requirement import State as Standing
+from designer.model.region import Prism
 from designer.model.robot import Poses, Robot
 from designer.model.space import Orientations
+from designer.model.verdict import State as Standing
 from designer.model.workspace import Workspace
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section

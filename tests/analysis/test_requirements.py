@@ -17,8 +17,8 @@ from designer.cli.commands import app
 from designer.cli.tables import _summary_of_requirements
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
-from designer.model.requirement import Answer, Requirement, State, answer_of
 from designer.model.robot import Poses
+from designer.model.verdict import Answer, Requirement, State, answer_of
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
 from designer.report.render import rendered

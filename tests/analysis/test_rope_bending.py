@@ -14,7 +14,7 @@ from pairs.table import analysed
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.rope_bending import life_requirements
-from designer.model.requirement import State
+from designer.model.verdict import State
 
 LIFE: dict[str, Any] = {
     "b0": 1.2, "b1": -2.5, "b2": 5.5, "b3": -1.7, "wire_strength": "1770 MPa",

@@ -16,12 +16,12 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
 from designer.cli.commands import app
 from designer.cli.tables import _summary_of_requirements
-from designer.explore.ropes import Ropes
+from designer.explore.answers import Ropes
 from designer.grades.grade import Grade, Modulus, Reference, RopeMaterial, Size
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.io.config import read_study
 from designer.model.cable import Trust
-from designer.model.requirement import Answer
+from designer.model.verdict import Answer
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
 from designer.report.render import rendered
@@ -194,7 +194,7 @@ def test_a_yes_is_subject_to_what_is_not_certain(
 ) -> None:
     """In page, terminal, window and JSON alike."""
     pytest.importorskip("PySide6")
-    from designer.explore.desktop.panel_requirements import answer_words
+    from designer.explore.desktop.panels_below import answer_words
 
     analysis = solve(f"selection: {{grades: [{rope.id}]}}", rope)
     assert analysis.selection is not None

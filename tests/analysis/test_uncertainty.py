@@ -26,8 +26,7 @@ from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade, Modulus
 from designer.model.cable import Cable, Material
 from designer.model.load_case import Ice, LoadCase, Wind
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.robot import Platform, Robot
 from designer.model.uncertainty import Normal, Spread, Uncertainty, Uniform
 from designer.model.workspace import Workspace

@@ -15,7 +15,7 @@ from pairs.table import analysed
 
 from designer.analysis.analyse import Analysis
 from designer.explore.session import Session
-from designer.model.requirement import Answer, Requirement, State
+from designer.model.verdict import Answer, Requirement, State
 from designer.plugins import find_plugins
 from designer.resources import example_file
 

@@ -31,8 +31,7 @@ from designer.analysis.pose import analyse_pose
 from designer.analysis.result_json import result_dict, size_dict
 from designer.documents.plain import json_text
 from designer.errors import DesignerError
-from designer.grades.files import read_grade
-from designer.grades.registry import Catalogue, load_catalogue
+from designer.grades.registry import Catalogue, load_catalogue, read_grade
 from designer.io.config import read_study
 from designer.plugins import find_plugins
 from designer.progress import Silent

@@ -25,7 +25,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from designer.analysis.analyse import analyse
-from designer.explore.map import MapAnswer
+from designer.explore.answers import MapAnswer
 from designer.explore.question import Message, Rope
 from designer.explore.session import Session
 from designer.explore.worker import Worker
@@ -136,7 +136,7 @@ def _shown_s(name: str, maps: Sequence[MapAnswer]) -> tuple[float, float]:
     from PySide6.QtTest import QTest
 
     from designer.explore.desktop.app import application
-    from designer.explore.desktop.settings import Settings
+    from designer.explore.desktop.files import Settings
     from designer.explore.desktop.window import Window
 
     application()

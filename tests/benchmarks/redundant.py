@@ -29,7 +29,7 @@ from sample_robots import COGIRO
 from sizing import STEEL, Paper, in_chunks, seconds_per_pose
 
 from designer.model.cable import Material
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace

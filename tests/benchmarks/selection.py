@@ -20,7 +20,7 @@ import numpy as np
 from designer.arrays import frozen_array
 from designer.grades.registry import load_catalogue
 from designer.model.cable import Cable
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
 from designer.selection.verify import Sampled, verify_sizes

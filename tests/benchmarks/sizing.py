@@ -33,8 +33,7 @@ from scipy.optimize import minimize, root
 from designer.arrays import frozen_array
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2 as G
 from designer.model.cable import Material
-from designer.model.prism import Prism
-from designer.model.region import CHUNK
+from designer.model.region import CHUNK, Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
 from designer.sizing.newton import size_poses

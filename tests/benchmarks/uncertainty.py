@@ -31,7 +31,7 @@ from ropes import rope
 from designer.analysis.uncertainty import draws_at, uncertainty_of
 from designer.effects.design import AsBuilt
 from designer.model.cable import Material
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Platform, Robot
 from designer.model.uncertainty import Normal, Uncertainty, Uniform
 from designer.model.workspace import Workspace

@@ -14,7 +14,7 @@ from PySide6.QtGui import QPixmap
 from PySide6.QtWidgets import QApplication
 
 from designer.explore.desktop.app import application
-from designer.explore.desktop.settings import Settings
+from designer.explore.desktop.files import Settings
 from designer.explore.desktop.window import Window
 from designer.resources import example_file, example_names
 

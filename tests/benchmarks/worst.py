@@ -25,8 +25,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, frozen_array
 from designer.io.config import read_study
-from designer.model.prism import Prism
-from designer.model.rectangle import Rectangle
+from designer.model.region import Prism, Rectangle
 from designer.model.robot import Poses, Robot
 from designer.model.space import Orientations
 from designer.model.workspace import Workspace

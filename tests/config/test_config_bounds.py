@@ -14,12 +14,18 @@ import pytest
 from benchmarks.damaged_inputs import NUMBERS, no_longer_than, spoilt
 
 from designer.documents.bounds import BOUNDS
-from designer.documents.fields import QuantityField
+from designer.documents.fields import (
+    AnySection,
+    FileValue,
+    QuantityField,
+    ReadAs,
+    Section,
+    fields_of,
+)
 from designer.documents.plain import finite
-from designer.documents.section import AnySection, FileValue, ReadAs, Section, fields_of
 from designer.errors import Fault, InputError
-from designer.grades.files import read_grade
 from designer.grades.grade import GradeSheet
+from designer.grades.registry import read_grade
 from designer.io.config import read_study
 from designer.io.config.schema import StudySection
 from designer.resources import data_folder, example_file, example_names

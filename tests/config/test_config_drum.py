@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from designer.errors import Fault
-from designer.model.drum import Drum
+from designer.model.winches import Drum
 from designer.study import Study
 
 STUDY = """\

@@ -13,8 +13,7 @@ from designer.effects.registry import SHIPPED
 from designer.errors import Fault
 from designer.io.config.effects import read_effects
 from designer.model.cable import Cable
-from designer.model.machine import Machine
-from designer.model.robot import Platform, Robot
+from designer.model.robot import Machine, Platform, Robot
 from designer.study import DeclaredEffect, Entry, Study
 
 FaultsOf = Callable[[str], list[Fault]]

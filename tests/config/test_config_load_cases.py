@@ -9,7 +9,7 @@ import pytest
 
 from designer.errors import Fault
 from designer.model.load_case import AIR_DENSITY_KG_PER_M3
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Poses
 from designer.statics.geometry import load_wrench_N
 from designer.study import Study

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from designer.errors import Fault
-from designer.model.rectangle import Rectangle
+from designer.model.region import Rectangle
 from designer.model.space import FILLING
 from designer.model.workspace import Workspace
 from designer.study import Study

@@ -14,7 +14,7 @@ from designer.errors import InputError
 from designer.io.config import read_study
 from designer.io.poses import poses_in, read_poses
 from designer.model.robot import Poses
-from designer.model.turning import EachPose, Toward, TurnTable
+from designer.model.space import EachPose, Toward, TurnTable
 from designer.sizing.newton import size_poses
 from designer.study import Study
 from designer.workspace.best_turns import BestTurns

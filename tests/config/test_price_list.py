@@ -13,7 +13,7 @@ from designer.errors import InputError
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.io.config.moved import moved_to
-from designer.model.price_list import Offer, PriceList
+from designer.model.cable import Offer, PriceList
 
 GRADE = "unirope-6x36-iwrc-1960"
 HEAD = "grade,size,price_per_m,currency,date\n"

@@ -20,7 +20,7 @@ from designer.diagnosis.problem import Problem
 from designer.io.config import read_study
 from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
-from designer.model.measured_data import Noise
+from designer.model.measurements import Noise
 from designer.report.diagnosis.report import write_diagnosis
 
 

@@ -22,7 +22,7 @@ from designer.diagnosis.statistics import Lasting, is_outlier, lasting, score_co
 from designer.effects.effect import Effect, Parameter, Setting, Size
 from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.model.measured_data import Noise
+from designer.model.measurements import Noise
 from designer.model.robot import Poses
 from designer.units import LENGTH
 

@@ -24,7 +24,7 @@ from designer.diagnosis.result import Diagnosis, rows_dict
 from designer.errors import InputError
 from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.model.measured_data import Noise
+from designer.model.measurements import Noise
 
 BOTH = ("length", "tension")
 

@@ -15,7 +15,7 @@ from designer.diagnosis.result import Diagnosis
 from designer.effects.effect import Setting
 from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.model.measured_data import Noise
+from designer.model.measurements import Noise
 
 pytestmark = pytest.mark.slow
 

@@ -22,7 +22,7 @@ from designer.diagnosis.statistics import heldout_rows
 from designer.effects.effect import Effect, Setting
 from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.model.measured_data import Noise
+from designer.model.measurements import Noise
 
 
 @pytest.fixture

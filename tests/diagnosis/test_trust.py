@@ -10,7 +10,7 @@ from designer.diagnosis.fit import fit
 from designer.diagnosis.problem import Problem
 from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.model.measured_data import Noise
+from designer.model.measurements import Noise
 
 STUDY = """
 name: tripod with a line from above

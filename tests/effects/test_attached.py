@@ -19,8 +19,7 @@ from designer.analysis.sensitivities import with_density
 from designer.analysis.uncertainty import Draws
 from designer.model.cable import Attached, Cable
 from designer.model.load_case import Ice, LoadCase, Wind
-from designer.model.machine import Machine
-from designer.model.robot import Platform, Poses, Robot
+from designer.model.robot import Machine, Platform, Poses, Robot
 from designer.statics.inverse import solve_sagging
 
 HOSE = (Attached(0.4, 0.03),)

@@ -16,11 +16,9 @@ from designer.effects.effect import Effect, Readings, frame_size_m
 from designer.effects.registry import SHIPPED
 from designer.effects.winches import direction_of, dragged_m
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
-from designer.model.load_case import LoadCase, Wind
-from designer.model.machine import Machine
-from designer.model.measured_data import Measured
-from designer.model.robot import Platform, Poses, Robot
-from designer.model.wrench_set import WrenchSet
+from designer.model.load_case import LoadCase, Wind, WrenchSet
+from designer.model.measurements import Measured
+from designer.model.robot import Machine, Platform, Poses, Robot
 from designer.statics.inverse import solve_sagging
 
 CABLE = Cable(0.01, 0.4, 5e6, 12e3)

@@ -23,9 +23,8 @@ from designer.errors import EffectError
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.model.cable import Cable
-from designer.model.machine import Machine
 from designer.model.measurements import Measurements
-from designer.model.robot import Poses
+from designer.model.robot import Machine, Poses
 from designer.progress import Silent
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section

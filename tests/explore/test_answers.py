@@ -13,12 +13,19 @@ import pytest
 from designer.analysis.analyse import Analysis, analyse
 from designer.analysis.pose import analyse_pose
 from designer.cli.commands import main
+from designer.explore.answers import (
+    full_ropes,
+    map_answer,
+    pose_answer,
+    quick_ropes,
+    ropes_of,
+    unserved,
+    values_at,
+    worst_answer,
+)
 from designer.explore.export import rope_table
-from designer.explore.here import here
-from designer.explore.map import map_answer, unserved, values_at, worst_answer
 from designer.explore.quantities import CHEAP, QUANTITIES, category_labels
 from designer.explore.question import Question, Rope, RopePerCable
-from designer.explore.ropes import full_ropes, quick_ropes, ropes_of
 from designer.explore.session import Session
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
@@ -53,7 +60,10 @@ def edited(yard: Session) -> Question:
 def test_the_pose_is_that_of_size(name: str, example: Any) -> None:
     session: Session = example(name)
     session.edit("robot.platform.mass", "33 kg")
-    found, pose = here(question_of(session), settled=True), analyse_pose(question_of(session).study)
+    found, pose = (
+        pose_answer(question_of(session), settled=True),
+        analyse_pose(question_of(session).study),
+    )
     assert pose is not None
     statics = pose.sizing.statics
     assert found.is_solved
@@ -82,7 +92,7 @@ def test_the_command_prints_what_the_window_shows(
         main()
     assert end.value.code == 0
     printed = json.loads(capsys.readouterr().out)["pose"]["sagging"]
-    found = here(question_of(session))
+    found = pose_answer(question_of(session))
     assert printed["diameter_m"] == found.diameter_m
     assert printed["lengths_m"] == [one.length_m for one in found.cables]
     assert printed["tensions_N"] == [one.exit_tension_N for one in found.cables]
@@ -90,13 +100,13 @@ def test_the_command_prints_what_the_window_shows(
 
 def test_a_place_beside_the_pose_is_as_if_it_were_the_pose(yard: Session) -> None:
     yard.move([14.0, 10.0, 3.0])
-    found = here(question_of(yard))
+    found = pose_answer(question_of(yard))
     study = replace(question_of(yard).study, pose=Poses.at([14.0, 10.0, 3.0]))
     pose = analyse_pose(study)
     assert pose is not None
     assert found.diameter_m == float(pose.sizing.diameter_m)
     yard.keep_pose()
-    assert here(question_of(yard)).diameter_m == found.diameter_m
+    assert pose_answer(question_of(yard)).diameter_m == found.diameter_m
 
 
 @pytest.mark.slow
@@ -233,7 +243,10 @@ def test_every_value_of_the_map_with_a_rope_is_that_of_its_pose(
     for part, grid in found.grids.items():
         i, j = (int(rng.integers(n)) for n in grid.shape[:2])
         session.move(grid[i, j])
-        one, values = here(question_of(session)), {key: found.on(part, key) for key in found.values}
+        one, values = (
+            pose_answer(question_of(session)),
+            {key: found.on(part, key) for key in found.values},
+        )
         assert one.utilisation == pytest.approx(values["utilisation"][i, j], rel=1e-9)
         assert one.max_tension_N == pytest.approx(values["tension"][i, j], rel=1e-9)
         assert one.diameter_m == pytest.approx(values["diameter"][i, j], rel=1e-9)
@@ -308,7 +321,7 @@ def test_ropes_for_groups_of_cables(yard: Session) -> None:
     assert worst.rope is not None
     met = analysis.assignment.verification
     assert worst.rope.utilisation == pytest.approx(met.utilisation.max(), rel=1e-6)
-    chart, one = map_answer(question_of(yard)), here(question_of(yard))
+    chart, one = map_answer(question_of(yard)), pose_answer(question_of(yard))
     assert chart.values["utilisation"].max() <= met.utilisation.max() * (1.0 + 1e-9)
     assert one.utilisation == max(cable.utilisation for cable in one.cables)
 
@@ -333,7 +346,7 @@ def test_a_load_that_nothing_bears_is_an_answer_too(yard: Session) -> None:
     yard.edit("workspace.samples", "300")
     yard.move([15.0, 9.0, 40.0])
     question = question_of(yard)
-    found = here(question)
+    found = pose_answer(question)
     assert found.verdict is Verdict.OUTSIDE_HULL
     assert (found.cables, found.curves_m, found.is_stable) == ((), None, None)
     assert np.isnan(found.diameter_m)
@@ -351,7 +364,7 @@ def test_a_load_that_nothing_bears_is_an_answer_too(yard: Session) -> None:
 
 def test_shapes_of_cables(yard: Session) -> None:
     yard.choose(Rope(WIRE, "3/8 in"))
-    found = here(question_of(yard))
+    found = pose_answer(question_of(yard))
     assert found.curves_m is not None
     for one, curve, chord in zip(found.cables, found.curves_m, found.chords_m, strict=True):
         line = (chord[1] - chord[0]) / np.linalg.norm(chord[1] - chord[0])
@@ -374,16 +387,16 @@ def test_shapes_of_cables(yard: Session) -> None:
 def test_a_rope_that_is_too_weak_here_is_told(yard: Session) -> None:
     yard.edit("robot.platform.mass", "2 t")
     yard.choose(Rope(WIRE, "5/32 in"))
-    found = here(question_of(yard))
+    found = pose_answer(question_of(yard))
     assert found.utilisation > 1.0
     assert "too weak here" in found.sentence
 
 
 def test_outside_the_region_is_told(yard: Session) -> None:
     yard.move([15.0, 9.0, 0.5])
-    assert here(question_of(yard)).outside == "This pose lies outside the region."
+    assert pose_answer(question_of(yard)).outside == "This pose lies outside the region."
     yard.move([15.0, 9.0, 5.0])
-    assert here(question_of(yard)).outside == ""
+    assert pose_answer(question_of(yard)).outside == ""
 
 
 @pytest.mark.slow
@@ -395,7 +408,7 @@ def test_effects_act_as_in_the_report(tmp_path: Path, no_plugins: Plugins, yard:
     question = question_of(Session.open(study, no_plugins))
     pose = analyse_pose(question.study)
     assert pose is not None
-    found = here(question)
+    found = pose_answer(question)
     assert found.diameter_m == float(pose.sizing.diameter_m)
     assert found.cables[0].length_m == float(pose.sizing.statics.length_m[0])
     analysis = analyse(question.study, question.catalogue)

@@ -7,11 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from designer.explore.compare import Pin, compare
-from designer.explore.here import here
-from designer.explore.map import map_answer, worst_answer
+from designer.explore.answers import (
+    Pin,
+    compare,
+    full_ropes,
+    map_answer,
+    pose_answer,
+    quick_ropes,
+    worst_answer,
+)
 from designer.explore.question import Rope
-from designer.explore.ropes import full_ropes, quick_ropes
 from designer.explore.session import Session
 
 WIRE = "unirope-7x19-galvanised"
@@ -21,7 +26,7 @@ def pin_of(session: Session, **how: Any) -> Pin:
     question = session.question()
     assert question is not None
     parts = {"worst": worst_answer(question), "ropes": quick_ropes(question)} | how
-    return Pin(question, session.fields(), here=here(question), **parts)
+    return Pin(question, session.fields(), here=pose_answer(question), **parts)
 
 
 @pytest.fixture

@@ -13,9 +13,8 @@ import pytest
 
 from designer.analysis.analyse import analyse
 from designer.errors import DesignerError, InputError, OutputError
+from designer.explore.answers import map_answer, pose_answer
 from designer.explore.export import COLUMNS, What, export, map_columns
-from designer.explore.here import here
-from designer.explore.map import map_answer
 from designer.explore.question import Question, Rope
 from designer.explore.session import Session
 from designer.exports.formats import FORMATS
@@ -44,7 +43,7 @@ def test_tables(question: Question, tmp_path: Path) -> None:
     assert [path.name for path in written] == ["cables.csv", "map.csv", "ropes.csv"]
     cables = rows_of(written[0])
     assert [float(row["length_m"]) for row in cables] == [
-        one.length_m for one in here(question).cables
+        one.length_m for one in pose_answer(question).cables
     ]
     chart = rows_of(written[1])
     columns = map_columns(map_answer(question, fine=True))
@@ -92,7 +91,7 @@ def test_the_report_is_that_of_the_command(question: Question, tmp_path: Path) -
     own = analyse(question.study, question.catalogue).to_dict()
     for part in ("pose", "workspace", "selection", "answer"):
         assert result[part] == json.loads(json.dumps(own[part]))
-    assert here(question).diameter_m == result["pose"]["sagging"]["diameter_m"]
+    assert pose_answer(question).diameter_m == result["pose"]["sagging"]["diameter_m"]
 
 
 @pytest.mark.slow

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from designer.explore.fields import Field, keys_of
+from designer.explore.fields import Field, count_slider, keys_of
 from designer.explore.session import Session
-from designer.explore.sliders import count_slider
 from designer.plugins import Plugins
 from designer.resources import example_names
 from designer.units import read_quantity

@@ -16,9 +16,8 @@ from pairs.options import BY_ID, GRADES, PATHS, POSES, file_text, files_of, stud
 from pairs.reference import Pose, solve
 from pairs.scenario import turn_at
 
-from designer.explore.map import values_at, worst_answer
+from designer.explore.answers import full_ropes, values_at, worst_answer
 from designer.explore.question import Question, Rope
-from designer.explore.ropes import full_ropes
 from designer.explore.session import Session
 from designer.plugins import Plugins
 

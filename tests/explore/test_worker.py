@@ -15,14 +15,12 @@ import numpy as np
 import pytest
 
 from designer import kernel
-from designer.explore import helper as helper_module
 from designer.explore import worker as worker_module
+from designer.explore.answers import PoseAnswer, Ropes, full_ropes
 from designer.explore.export import rope_table
-from designer.explore.helper import Helper
-from designer.explore.here import Here
 from designer.explore.question import Long, Question, Quick, Request, Rope, failure_text
-from designer.explore.ropes import Ropes, full_ropes
 from designer.explore.session import Session
+from designer.explore.worker import Helper
 from designer.model.robot import Poses
 from designer.plugins import Plugins, find_plugins
 from designer.progress import checkpoint, interrupted_by
@@ -71,7 +69,7 @@ def test_the_pose_is_answered_in_the_middle_of_longer_work(
     assert work.began.wait(10.0)
     found = asker.end_of(asker.ask("here", yard.question()))
     assert found.status == "done"
-    assert isinstance(found.answer, Here)
+    assert isinstance(found.answer, PoseAnswer)
     work.may_end.set()
     end = asker.end_of(long)
     assert (end.status, end.answer) == ("done", "worked")
@@ -310,7 +308,7 @@ def helper_with(
     work: Callable[[object], None], monkeypatch: pytest.MonkeyPatch
 ) -> tuple[Helper, list[Any], threading.Event]:
     """A helper whose process does this, what it delivers, and when it has."""
-    monkeypatch.setattr(helper_module, "work", work)
+    monkeypatch.setattr(worker_module, "work", work)
     got: list[Any] = []
     told = threading.Event()
 

@@ -13,7 +13,7 @@ from designer.exports.robot import ExportedRobot
 from designer.foreign.robot import ForeignRobot
 from designer.foreign.study import read_foreign
 from designer.model.cable import Material
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.winches import Winches
 from designer.model.workspace import Workspace

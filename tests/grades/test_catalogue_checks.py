@@ -10,16 +10,16 @@ import pytest
 from grade_samples import family_grade, write_grade
 
 from designer.grades.checks import find_flaws
-from designer.grades.files import read_grades
 from designer.grades.grade import (
     AreaFactor,
     ComputedFigure,
     Grade,
     Limits,
     Modulus,
+    RelativeStiffness,
     ThermalExpansion,
 )
-from designer.grades.parts import RelativeStiffness
+from designer.grades.registry import read_grades
 
 _SOUND = """\
 id: acme-7x19

@@ -7,10 +7,9 @@ import pytest
 from grade_samples import GRADE_TEXT, write_grade
 
 from designer.errors import InputError
-from designer.grades import files
-from designer.grades.files import grade_files, read_grade, read_grades
-from designer.grades.grade import ComputedFigure
-from designer.grades.parts import RelativeStiffness
+from designer.grades import registry
+from designer.grades.grade import ComputedFigure, RelativeStiffness
+from designer.grades.registry import grade_files, read_grade, read_grades
 
 
 def _faults(path: Path, text: str):
@@ -275,7 +274,7 @@ def test_loops_of_links_and_pipes_do_not_trap_the_reader(tmp_path):
 
 
 def test_a_folder_with_thousands_of_files_is_one_fault(tmp_path):
-    for number in range(files.MOST_FILES + 1):
+    for number in range(registry.MOST_FILES + 1):
         (tmp_path / f"{number}.yaml").touch()
 
     found, faults = read_grades(tmp_path)
@@ -285,7 +284,7 @@ def test_a_folder_with_thousands_of_files_is_one_fault(tmp_path):
 
 
 def test_listing_stops_at_the_limit_of_entries(tmp_path, monkeypatch):
-    monkeypatch.setattr(files, "MOST_ENTRIES", 5)
+    monkeypatch.setattr(registry, "MOST_ENTRIES", 5)
     for number in range(6):
         (tmp_path / f"{number}.txt").touch()
 

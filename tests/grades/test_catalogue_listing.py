@@ -3,14 +3,13 @@ from __future__ import annotations
 import pytest
 from grade_samples import GRADE_TEXT, write_grade
 
-from designer.grades.files import read_grades
 from designer.grades.listing import (
     Wanted,
     facts,
     split_nominal,
     summary,
 )
-from designer.grades.registry import load_catalogue
+from designer.grades.registry import load_catalogue, read_grades
 
 
 def test_facts_name_the_lender_of_a_borrowed_figure_and_the_gaps():

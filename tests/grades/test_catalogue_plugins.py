@@ -12,7 +12,7 @@ from plugin_samples import hook, install_plugin
 import designer
 from designer import plugins
 from designer.cli.commands import main
-from designer.grades import files
+from designer.grades import registry
 from designer.grades.registry import CatalogueSource, load_catalogue
 
 
@@ -42,7 +42,7 @@ def test_a_plugin_may_give_files_and_grades_made_in_python(site, tmp_path):
     path = write_grade(tmp_path / "a.yaml", grade_id="acme-file")
     code = hook(
         "from dataclasses import replace; from pathlib import Path; "
-        f"from designer.grades.files import read_grade; path = Path({str(path)!r}); "
+        f"from designer.grades.registry import read_grade; path = Path({str(path)!r}); "
         "return [path, replace(read_grade(path), id='acme-python', file='')]"
     )
     install_plugin(site, "acme-mixed", code)
@@ -131,11 +131,11 @@ def test_an_entry_point_to_what_a_module_has_not_is_reported(site):
 def test_a_folder_of_thousands_of_files_is_one_line_and_none_is_read(site, tmp_path, monkeypatch):
     ropes = tmp_path / "ropes"
     ropes.mkdir()
-    for number in range(files.MOST_FILES + 500):
+    for number in range(registry.MOST_FILES + 500):
         (ropes / f"{number}.yaml").touch()
     install_plugin(site, "acme-many", _folder_hook(ropes))
     read = []
-    monkeypatch.setattr(files, "read_document", read.append)
+    monkeypatch.setattr(registry, "read_document", read.append)
 
     (problem,) = load_catalogue(plugins=_only("acme-many")).problems
 
@@ -193,7 +193,7 @@ def test_a_grade_made_in_python_passes_the_same_checks(site, tmp_path, change, w
     path = write_grade(tmp_path / "a.yaml")
     code = hook(
         "from dataclasses import replace; from pathlib import Path; "
-        "from designer.grades.files import read_grade; "
+        "from designer.grades.registry import read_grade; "
         f"return [replace(read_grade(Path({str(path)!r})), {change})]"
     )
     install_plugin(site, "acme-values", code)

@@ -7,10 +7,9 @@ from itertools import pairwise
 
 import pytest
 
-from designer.grades.files import read_grades
 from designer.grades.grade import Grade
 from designer.grades.listing import ton_remarks
-from designer.grades.registry import Catalogue, load_catalogue
+from designer.grades.registry import Catalogue, load_catalogue, read_grades
 from designer.resources import data_folder
 
 _LBF_N = 4.4482216152605

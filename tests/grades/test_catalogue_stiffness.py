@@ -7,8 +7,7 @@ from grade_samples import family_grade
 from hypothesis import given
 from hypothesis import strategies as st
 
-from designer.grades.grade import Grade
-from designer.grades.parts import RelativeStiffness
+from designer.grades.grade import Grade, RelativeStiffness
 
 
 def _stiffness(ratios: tuple[float, ...], loads: tuple[float, ...] = ()) -> RelativeStiffness:

@@ -12,7 +12,7 @@ from designer.arrays import FloatArray
 from designer.errors import Fault, InputError
 from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.model.measured_data import Measured
+from designer.model.measurements import Measured
 
 POINT = """\
 robot:

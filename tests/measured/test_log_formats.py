@@ -22,7 +22,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from designer.errors import Fault, InputError
 from designer.measured import table
-from designer.model.measured_data import Measured
+from designer.model.measurements import Measured
 
 
 def same(found: Measured, before: Measured) -> None:

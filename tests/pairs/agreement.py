@@ -33,8 +33,8 @@ from scipy.interpolate import CubicSpline
 
 from designer.analysis.analyse import Analysis
 from designer.model.load_case import Loaded
-from designer.model.requirement import Requirement
 from designer.model.robot import Poses
+from designer.model.verdict import Requirement
 from designer.selection.cases import CaseResult
 from designer.statics.inverse import solve_sagging
 from designer.workspace.demand import settled

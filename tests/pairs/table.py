@@ -29,8 +29,7 @@ from pairs.options import GRADES, OPTIONS, Option, base_of, file_text, files_of,
 import designer
 from designer.analysis.analyse import Analysis
 from designer.errors import InputError
-from designer.grades.files import read_grade
-from designer.grades.registry import Catalogue
+from designer.grades.registry import Catalogue, read_grade
 from designer.study import Study
 
 FILE = Path(__file__).with_name("outcomes.csv")

@@ -13,7 +13,7 @@ from sample_robots import COGIRO
 from designer.arrays import FloatArray
 from designer.kernel.compiling import kernel
 from designer.model.cable import Cable
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.physics import catenary

@@ -7,10 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from designer.arrays import FloatArray
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
-from designer.model.rectangle import Rectangle
-from designer.model.region import Region
+from designer.model.region import PointList, Prism, Rectangle, Region
 from designer.model.space import Orientations, Space
 from designer.proof.encloser import Cover, _turning_axes, border_m, covers_of
 

@@ -10,9 +10,7 @@ from twins.thinnest import thinnest
 
 from designer.arrays import frozen_array
 from designer.model.cable import Cable, Material
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
-from designer.model.rectangle import Rectangle
+from designer.model.region import PointList, Prism, Rectangle
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.proof.encloser import Encloser, covers_of

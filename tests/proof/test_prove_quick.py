@@ -12,7 +12,7 @@ import pytest
 
 from designer.arrays import FloatArray, frozen_array
 from designer.model.cable import Cable, Material
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.proof.ahead import compile_apart, compile_here

@@ -16,10 +16,8 @@ from designer.analysis.provenance import Provenance
 from designer.arrays import FloatArray, frozen_array
 from designer.grades.registry import Catalogue
 from designer.model.cable import Material
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
-from designer.model.region import Region
-from designer.model.rings import every_second
+from designer.model.polygon import every_second
+from designer.model.region import PointList, Prism, Region
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import HangsBelow, Workspace
 from designer.study import Study, StudySource

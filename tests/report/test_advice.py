@@ -16,9 +16,8 @@ from report_cases import CLEARANCE_NOT_KEPT, DEFAULTS, FAST, PRISM, SIX
 from report_parts import said
 
 from designer.analysis.analyse import Analysis
-from designer.model.requirement import Requirement
 from designer.model.robot import Poses
-from designer.model.verdict import Verdict
+from designer.model.verdict import Requirement, Verdict
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
 from designer.resources import example_file

@@ -14,7 +14,7 @@ from figures_cases import CASES, THREE, maps_of, pose_at, solved
 from designer.analysis.maps import WorkspaceMaps
 from designer.analysis.pose import analyse_pose
 from designer.grades.registry import load_catalogue
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.report import format as fmt

@@ -15,7 +15,7 @@ from designer.analysis.provenance import Provenance
 from designer.arrays import frozen_array
 from designer.grades.registry import Catalogue
 from designer.io.config import read_study
-from designer.model.point_list import PointList
+from designer.model.region import PointList
 from designer.model.robot import Poses
 from designer.model.space import Orientations
 from designer.report.design.drawings import Drawings

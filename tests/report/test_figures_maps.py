@@ -17,8 +17,8 @@ from designer.analysis.maps import as_built, workspace_maps
 from designer.analysis.pose import analyse_pose
 from designer.io.config import read_study
 from designer.model import polygon
-from designer.model.prism import Prism
-from designer.model.rings import outline_m
+from designer.model.polygon import outline_m
+from designer.model.region import Prism
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.report.figures.canvas import names_of

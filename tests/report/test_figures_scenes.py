@@ -24,7 +24,7 @@ from designer.analysis.field import RegionField
 from designer.analysis.maps import WorkspaceMaps
 from designer.analysis.pose import analyse_pose
 from designer.errors import MissingLibraryError
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.report.figures import opengl, overlay, palette, parts, stage
 from designer.report.figures.colours import DIAMETER, RATIO, TENSION
 from designer.report.figures.interactive import workspace_scene_html

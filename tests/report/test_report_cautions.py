@@ -14,7 +14,7 @@ from test_report_groups import YARD
 
 from designer.analysis.analyse import Analysis
 from designer.grades.grade import Limits
-from designer.model.machine import Surroundings
+from designer.model.robot import Surroundings
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import design_report, section
 from designer.report.figures.charts_selection import pareto_chart

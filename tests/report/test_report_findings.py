@@ -9,7 +9,7 @@ import pytest
 from report_parts import said
 
 from designer.analysis.analyse import Analysis
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Poses
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section

@@ -12,8 +12,8 @@ from report_parts import paragraphs, said, table
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
-from designer.model.requirement import Requirement
 from designer.model.robot import Poses
+from designer.model.verdict import Requirement
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section as section_of
 from designer.selection.criteria import criteria_of

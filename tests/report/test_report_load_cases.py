@@ -16,7 +16,7 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
 from designer.cli.tables import summary_rows
 from designer.documents.plain import json_text
-from designer.model.requirement import State
+from designer.model.verdict import State
 from designer.report.design.drawings import Drawings
 from designer.report.design.first_page import Unmet
 from designer.report.design.report import section as section_of

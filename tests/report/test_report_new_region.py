@@ -10,9 +10,8 @@ import pytest
 
 import designer
 from designer.arrays import FloatArray
-from designer.explore.map import map_grids
-from designer.model.prism import Prism
-from designer.model.region import Border, Region
+from designer.explore.answers import map_grids
+from designer.model.region import Border, Prism, Region
 from designer.model.space import Orientations, Space
 from designer.proof.encloser import why_not
 from designer.report.design.report import design_report

@@ -141,7 +141,7 @@ workspace: {region: {points: [[15, 9, 4]]}, clearance: 0.1 m}
 
 @pytest.mark.parametrize("case", ["all", "some bad", "nothing", "limit"])
 def test_height_maps(case: str) -> None:
-    from designer.model.prism import Prism
+    from designer.model.region import Prism
 
     region = Prism.box((0.0, 4.0), (0.0, 3.0), (1.0, 2.0))
     position = region.section_m(0.5, 6, 24)

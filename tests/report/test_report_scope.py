@@ -14,8 +14,7 @@ from designer.analysis.result_json import result_dict
 from designer.arrays import frozen_array
 from designer.cli.tables import summary_rows
 from designer.io.config import read_study
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.robot import Poses
 from designer.model.space import Orientations, Space
 from designer.report.design.drawings import Drawings

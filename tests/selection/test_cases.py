@@ -16,20 +16,18 @@ from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.model.cable import Cable
 from designer.model.load_case import Ice, LoadCase, Loaded, Wind
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
-from designer.model.region import Region
+from designer.model.region import PointList, Prism, Region
 from designer.model.robot import Poses
 from designer.model.workspace import Workspace
 from designer.resources import example_file
 from designer.selection.cases import (
     CaseResult,
     Cases,
+    envelope,
     governing,
+    refine_all,
     resettled,
-    searched_all,
-    steepest,
-    together,
+    worst_load_direction,
 )
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
@@ -131,11 +129,12 @@ def test_few_samples_at_first_change_no_figure_of_what_is_searched(region: Regio
     cases = Cases(robot, workspace, each)
     thin, thick = (Cable(d, 5000.0 * d**2, 5e10 * d**2, 6e8 * d**2) for d in (0.004, 0.01))
     found = [
-        one.sampled([[thin, thick]] * 2, lambda _: None) for one in (cases, replace(cases, few=10))
+        one.sampled([[thin, thick]] * 2, lambda _: None)
+        for one in (cases, replace(cases, sample_limit=10))
     ]
     assert [tried[0].verification.holds for tried in found[1]] == [False, True]
     assert {one.sampled.samples for one in found[1][1]} == {10}
-    full, few = (searched_all(tried[1]) for tried in found)
+    full, few = (refine_all(tried[1]) for tried in found)
     assert {one.sampled.samples for one in few} == {40}
     assert [one.utilisation for one in few] == [one.utilisation for one in full]
     assert [one.is_full for one in few] == [one.is_full for one in full]
@@ -152,7 +151,7 @@ def test_a_load_is_turned_to_where_a_linear_severity_is_largest(seed: int) -> No
 
     case = LoadCase("starting", acceleration_m_per_s2=1.0)
     first = next(iter(case.on(FOUR, Cable(0.006, 0.13, 1.5e6, 2e4))))
-    turned, severity = steepest(first, severity_of(first), severity_of)
+    turned, severity = worst_load_direction(first, severity_of(first), severity_of)
     assert turned.inertia == pytest.approx(slope / np.linalg.norm(slope), abs=1e-6)
     assert severity == pytest.approx(np.linalg.norm(slope), rel=1e-12)
     assert tried < 60
@@ -170,10 +169,10 @@ def test_all_but_slow_robots_in_one_case_hurry() -> None:
     workspace = Workspace(BOX)
     three = replace(FOUR, exit_points_m=FOUR.exit_points_m[:3])
     both = LoadCase("static"), LoadCase("hoisting", dynamic_factor=1.3)
-    assert Cases(FOUR, workspace, both).hurried().few is not None
-    assert Cases(FOUR, workspace, both[:1]).hurried().few is None
+    assert Cases(FOUR, workspace, both).with_coarse_sampling().sample_limit is not None
+    assert Cases(FOUR, workspace, both[:1]).with_coarse_sampling().sample_limit is None
     for cases in (both, both[:1]):
-        assert Cases(three, workspace, cases).hurried().few is not None
+        assert Cases(three, workspace, cases).with_coarse_sampling().sample_limit is not None
 
 
 @pytest.mark.slow
@@ -264,7 +263,7 @@ def test_a_lost_cable_alone_needs_the_lengths_before_the_loss() -> None:
     cases = Cases(study.robot, study.workspace, (LoadCase("lost", cable_lost=2),))
     (found,) = cases.sampled([[cable]], lambda _: None)
     whole = verify(study.robot, study.workspace, cable)
-    sampled, searched = together(found), together(searched_all(found))
+    sampled, searched = envelope(found), envelope(refine_all(found))
     assert (sampled.longest_m > 0.9 * whole.longest_m).all()
     assert searched.longest_m == pytest.approx(whole.longest_m, rel=1e-6)
     assert searched.shortest_m == pytest.approx(whole.shortest_m, rel=1e-4)
@@ -325,7 +324,7 @@ def test_wind_is_searched_to_its_worst_direction() -> None:
     (found,) = Cases(robot, workspace, (LoadCase("gust", wind=Wind(12.0, 1.2)),)).sampled(
         [[cable]], lambda _: None
     )
-    most = governing(searched_all(found))
+    most = governing(refine_all(found))
     used = [
         solve_sagging(one.robot, Poses.at(points), one.cable).largest_tension_N.max()
         for one in LoadCase("gust", wind=Wind(12.0, 1.2, count=72)).on(robot, cable)

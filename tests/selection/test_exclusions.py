@@ -20,7 +20,7 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
 from designer.analysis.selection_json import candidates_csv
 from designer.cli.tables import summary_rows
-from designer.explore.ropes import ropes_of
+from designer.explore.answers import ropes_of
 from designer.io.config.reader import read_study
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section

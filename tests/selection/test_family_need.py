@@ -10,8 +10,7 @@ import pytest
 from designer.effects.design import AsBuilt
 from designer.model.cable import Material
 from designer.model.load_case import Ice, LoadCase, Wind
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
 from designer.selection.family_need import family_need, most_needed

@@ -15,8 +15,7 @@ from designer.cli.tables import _summary_of_groups
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.cable import Cable, Cables
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate, priced, undominated

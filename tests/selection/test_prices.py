@@ -9,8 +9,8 @@ import pytest
 from ropes import rope
 
 from designer.grades.grade import Grade
-from designer.model.price_list import Offer, PriceList
-from designer.model.prism import Prism
+from designer.model.cable import Offer, PriceList
+from designer.model.region import Prism
 from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate, common_currency, priced
 from designer.selection.prices import BORROWED, with_prices

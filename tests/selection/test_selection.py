@@ -10,13 +10,12 @@ from ropes import rope
 
 from designer.grades.grade import Grade
 from designer.model.load_case import STATIC, LoadCase, Wind
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.robot import Poses
 from designer.model.workspace import Workspace
 from designer.selection.assignment import for_all
+from designer.selection.cases import over_samples
 from designer.selection.result import GradeOutcome
-from designer.selection.samples import over_samples
 from designer.selection.select import select
 from designer.selection.verify import verify
 from designer.sizing.newton import size_poses

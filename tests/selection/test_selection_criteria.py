@@ -10,7 +10,7 @@ import pytest
 from sample_robots import ROPE
 
 from designer.model.load_case import STATIC, Loaded
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.selection.criteria import ROUNDING, Criterion, criteria_of

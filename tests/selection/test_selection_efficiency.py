@@ -7,7 +7,7 @@ import math
 import pytest
 from ropes import rope
 
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.winches import Winches
 from designer.model.workspace import Workspace
 from designer.selection.efficiency import Allowance, bending_efficiency

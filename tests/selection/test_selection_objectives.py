@@ -16,8 +16,7 @@ from designer.analysis.selection_json import selection_dict
 from designer.arrays import frozen_array
 from designer.grades.grade import Grade, Units
 from designer.model.cable import Cable, Preference
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate, common_currency
 from designer.selection.compare import dominator_of, is_undominated

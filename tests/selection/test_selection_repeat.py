@@ -12,7 +12,7 @@ from ropes import rope
 
 from designer.cli.commands import main
 from designer.model.cable import Material
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Poses
 from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate

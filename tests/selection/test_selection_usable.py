@@ -10,8 +10,7 @@ from ropes import rope
 
 from designer.arrays import frozen_array
 from designer.io.config import read_study
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.robot import Poses
 from designer.model.space import Orientations
 from designer.model.workspace import Workspace

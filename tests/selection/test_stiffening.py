@@ -13,20 +13,18 @@ from grade_samples import family_grade
 from scipy.optimize import brentq
 
 from designer.effects.design import AsBuilt
-from designer.grades.grade import Grade
-from designer.grades.parts import RelativeStiffness
+from designer.grades.grade import Grade, RelativeStiffness
 from designer.model.cable import Cable, Stiffening
 from designer.model.load_case import LoadCase, Wind
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.selection.candidate import candidates_of, undominated
+from designer.selection.cases import converge_stiffness
 from designer.selection.groups.choose import MOST_PROPOSALS, choose_groups_of
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
-from designer.selection.stiffening import as_it_meets
 from designer.statics.cable_loss import settle
 from designer.statics.inverse import solve_sagging
 from designer.study import CableGroup, Selection
@@ -135,7 +133,7 @@ def test_a_stiffness_that_moves_its_own_tension_is_found(exponent: float) -> Non
     def max_tension_N(cable: Cable) -> float:
         return 1e3 * (cable.axial_stiffness_N / 1e5)
 
-    found = as_it_meets(start, max_tension_N)
+    found = converge_stiffness(start, max_tension_N)
     at_N = law.at(max_tension_N(found))
     assert found.axial_stiffness_N == pytest.approx(at_N, rel=2e-6)
 

@@ -10,10 +10,9 @@ from scipy.optimize import linprog
 
 import designer
 from designer.model.cable import Cable
-from designer.model.load_case import LoadCase, Loaded
+from designer.model.load_case import LoadCase, Loaded, WrenchSet
 from designer.model.robot import Platform, Poses, Robot
-from designer.model.wrench_set import WrenchSet
-from designer.selection.cases import steepest
+from designer.selection.cases import worst_load_direction
 from designer.statics.inverse import solve_massless, solve_sagging
 
 G = 9.81
@@ -131,7 +130,7 @@ def test_the_inside_of_a_box_is_searched() -> None:
         return -float(np.linalg.norm(loaded.wrench_N - peak))
 
     first = next(iter(case.on(robot, CABLE)))
-    found, _ = steepest(first, severity_of(first), severity_of)
+    found, _ = worst_load_direction(first, severity_of(first), severity_of)
     assert found.wrench_N is not None
     np.testing.assert_allclose(found.wrench_N, peak, atol=1e-3)
 

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from designer.arrays import FloatArray, frozen_array
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2 as G
 from designer.model.cable import Material
-from designer.model.rectangle import Rectangle
+from designer.model.region import Rectangle
 from designer.model.robot import Platform, Poses, Robot, vertical_frame
 from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses

@@ -11,7 +11,7 @@ from pairs.reference import Pose, Problem, feasible, solve
 from designer.arrays import frozen_array
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2 as GRAVITY
 from designer.model.cable import Material
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.robot import Platform, Robot
 from designer.workspace.best_turns import BestTurns
 

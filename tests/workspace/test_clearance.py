@@ -15,11 +15,10 @@ from designer.kernel.calling import plain
 from designer.kernel.distance import nearest_faces, nearest_pieces
 from designer.model.cable import Cable
 from designer.model.load_case import STATIC, Loaded
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
-from designer.model.requirement import State
+from designer.model.region import PointList, Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
+from designer.model.verdict import State
 from designer.model.workspace import Workspace
 from designer.physics import catenary
 from designer.selection.criteria import criteria_of

@@ -10,9 +10,7 @@ import pytest
 
 from designer.arrays import frozen_array
 from designer.model.cable import Material
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
-from designer.model.region import CHUNK
+from designer.model.region import CHUNK, PointList, Prism
 from designer.model.robot import Poses, Robot
 from designer.model.space import FILLING, Orientations, Space
 from designer.model.workspace import Workspace

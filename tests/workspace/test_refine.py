@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.model.prism import Prism
+from designer.model.region import Prism
 from designer.model.space import Orientations, Space
 from designer.model.workspace import Workspace
 from designer.workspace.refine import CELLS_A_SIDE, LIGHT, Pool, refine

@@ -14,9 +14,7 @@ from designer.arrays import frozen_array
 from designer.cli.tables import summary_rows
 from designer.io.config import read_study
 from designer.model.cable import Material
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
-from designer.model.region import CHUNK
+from designer.model.region import CHUNK, PointList, Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.model.workspace import Workspace

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
+from designer.model.region import PointList, Prism
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.statics.inverse import solve_sagging

@@ -10,15 +10,14 @@ from pathlib import Path
 from PySide6.QtCore import QSocketNotifier, QTimer
 from PySide6.QtWidgets import QApplication
 
-from designer.explore.desktop.settings import Settings
+from designer.explore.desktop.files import Settings
 from designer.explore.desktop.window import Window
 
-_LONGEST_S = 300
+_MAX_WAIT_S = 300
 """Room for kernels that are compiled first and a large map, on a machine with other work."""
 
 
 def application() -> QApplication:
-    """Return the one application of this process."""
     app = QApplication.instance()
     if isinstance(app, QApplication):
         return app
@@ -58,7 +57,7 @@ class _Picture:
     def __init__(self, window: Window, file: Path) -> None:
         self.status = 1
         self._window, self._file = window, file
-        self._ticks_left = _LONGEST_S * 10
+        self._ticks_left = _MAX_WAIT_S * 10
         self._calm = 0
         self._timer = QTimer(window, interval=100)
         self._timer.timeout.connect(self._look)

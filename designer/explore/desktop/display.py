@@ -6,8 +6,7 @@ import subprocess
 import sys
 from importlib.util import find_spec
 
-_LONGEST_S = 60.0
-"""A forwarded display is slow, one that never answers must not hold up for ever."""
+_MAX_WAIT_S = 60.0  #: A forwarded display is slow, one that never answers must not hold up for ever
 _OPEN = """
 import sys
 from PySide6.QtGui import QGuiApplication, QOffscreenSurface, QOpenGLContext
@@ -47,7 +46,7 @@ def begin_probe() -> subprocess.Popen[str]:
 def why_no_window(probe: subprocess.Popen[str]) -> str:
     """Return in one line why no window can be opened here; empty where one can."""
     try:
-        _, complaint = probe.communicate(timeout=_LONGEST_S)
+        _, complaint = probe.communicate(timeout=_MAX_WAIT_S)
     except subprocess.TimeoutExpired:
         probe.kill()
         _, complaint = probe.communicate()

@@ -1,22 +1,21 @@
-"""Files of the window: studies opened, saved and left, robots imported, plans, and exports.
+"""Files of the window: what is remembered, studies opened, saved and left, imports, plans, exports.
 
 What is not saved is asked about, never lost.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
-from PySide6.QtCore import QObject, QTimer, QUrl, Signal
+from PySide6.QtCore import QByteArray, QObject, QSettings, QTimer, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from designer.errors import DesignerError
 from designer.explore.desktop.live_session import LONG, NAMES, LiveSession
-from designer.explore.desktop.settings import Settings
 from designer.report import format as fmt
 from designer.resources import example_file
 
@@ -25,13 +24,65 @@ if TYPE_CHECKING:
     from designer.explore.session import Session
     from designer.plugins import Plugins
 
+MAX_RECENT = 8
+
+
+class Settings:
+    """What is remembered, by name; in the user's own settings, or in a file (of a test)."""
+
+    def __init__(self, file: Path | None = None) -> None:
+        if file is None:
+            self._store = QSettings("cdpr-designer", "explore")
+        else:
+            self._store = QSettings(str(file), QSettings.Format.IniFormat)
+
+    @property
+    def theme(self) -> str:
+        """One of `widgets.THEME_CHOICES`."""
+        return str(self._store.value("theme", "system"))
+
+    @theme.setter
+    def theme(self, choice: str) -> None:
+        self._store.setValue("theme", choice)
+
+    @property
+    def hidden_panels(self) -> tuple[str, ...]:
+        names = self._store.value("hidden panels", [])
+        return (names,) if isinstance(names, str) else tuple(cast("list[str]", names or []))
+
+    @hidden_panels.setter
+    def hidden_panels(self, names: Iterable[str]) -> None:
+        self._store.setValue("hidden panels", list(names))
+
+    @property
+    def recent(self) -> tuple[Path, ...]:
+        """Studies that were open, the last one first; only those that are still there."""
+        stored = self._store.value("recent", [])
+        names = [stored] if isinstance(stored, str) else cast("list[str]", stored or [])
+        return tuple(path for path in map(Path, names) if path.is_file())
+
+    def remember(self, study: Path) -> None:
+        """Put a study in front of the recent ones."""
+        path = study.resolve()
+        earlier = [study_file for study_file in self.recent if study_file != path]
+        names = [str(study_file) for study_file in [path, *earlier][:MAX_RECENT]]
+        self._store.setValue("recent", names)
+
+    def bytes_of(self, name: str) -> QByteArray:
+        """Return a state of Qt that was kept under this name; empty where none was."""
+        state = self._store.value(name)
+        return state if isinstance(state, QByteArray) else QByteArray()
+
+    def keep_bytes(self, name: str, state: QByteArray) -> None:
+        self._store.setValue(name, state)
+
+
 _STUDIES = "Studies (*.yaml *.yml);;All files (*)"
 _ROBOTS = "Robots of CASPR and WireX (*.xml *.wcrfx);;All files (*)"
 _PLANS = "Plans (*.yaml *.yml);;All files (*)"
 _POSES = "Poses (*.csv);;All files (*)"
 _TITLE = "cdpr-designer"
-_STARTER = "fast"
-"""The study that has a comment to every field."""
+_STARTER = "fast"  #: The study that has a comment to every field
 _EXPORTS: dict[What, tuple[str, str, str]] = {
     "report": ("Folder for the report", "-report", ""),
     "picture": ("Picture of the scene", ".png", "Pictures (*.png)"),
@@ -50,26 +101,12 @@ _DISK_MS = 2000
 
 
 class Files(QObject):
-    """Dialogs about files, and what follows from them.
-
-    Parameters
-    ----------
-    parent : QWidget
-        What the dialogs stand before.
-    live : LiveSession
-        The open study.
-    settings : Settings
-        Where studies that were open are remembered.
-    with_plugins : bool
-        Whether studies are read with plugins of others; they are looked for with the first study.
-    """
+    """Dialogs about files, and what follows; plugins are looked for with the first study."""
 
     notice = Signal(str, tuple)
     """A line that asks for attention, and the names of its buttons; no line for no text."""
-    opening = Signal(str)
-    """A study of this name is about to be opened."""
-    not_opened = Signal()
-    """A study could not be opened, and may be gone."""
+    opening = Signal(str)  #: A study of this name is about to be opened
+    not_opened = Signal()  #: A study could not be opened, and may be gone
 
     def __init__(
         self, parent: QWidget, live: LiveSession, settings: Settings, *, with_plugins: bool
@@ -99,7 +136,6 @@ class Files(QObject):
         self.open(example_file(_STARTER))
 
     def ask_and_open(self) -> None:
-        """Let the user look for a study."""
         name, _ = QFileDialog.getOpenFileName(self._parent, "Open a study", "", _STUDIES)
         if name:
             self.open(Path(name))
@@ -109,13 +145,20 @@ class Files(QObject):
         name, _ = QFileDialog.getOpenFileName(self._parent, "Import a robot", "", _ROBOTS)
         if not name:
             return
+        from designer.foreign.study import ImportAnswers, load_importers, read_foreign, study_text
+        from designer.io.output import write_file
+
         source = Path(name)
         stem = source.stem.removesuffix("_bodies").removesuffix("_cables")
         start = str(source.with_name(f"{stem}.yaml"))
         name, _ = QFileDialog.getSaveFileName(self._parent, "Save the study as", start, _STUDIES)
-        if name and self._succeeds(
-            lambda: _import(source, Path(name), self._plugins), "Not imported"
-        ):
+
+        def write() -> None:
+            importers, _ = load_importers(self._plugins)
+            text = study_text(read_foreign(source, importers=importers), ImportAnswers())
+            write_file(Path(name), text)  # what the robot's file does not say is to be filled in
+
+        if name and self._succeeds(write, "Not imported"):
             self.open(Path(name))
 
     def open(self, path: Path) -> None:
@@ -135,7 +178,6 @@ class Files(QObject):
         self._live.open(opened[0])
 
     def close(self) -> None:
-        """Go back to the start page."""
         if self.may_leave():
             self._live.open(None)
 
@@ -171,7 +213,6 @@ class Files(QObject):
         return True
 
     def reload(self) -> None:
-        """Take what the file holds now."""
         session = self._live.session
         if session is not None:
             try:
@@ -200,32 +241,23 @@ class Files(QObject):
     # Leaving
 
     def may_leave(self) -> bool:
-        """Ask what becomes of long work and of changes; tells whether to go on."""
+        """Ask what becomes of long work and of changes that are not saved; whether to go on."""
         self._live.flushing.emit()
-        return self._may_end_work() and self._may_drop_changes()
-
-    def _may_end_work(self) -> bool:
-        """Ask whether work of minutes that goes on may end without a result."""
-        unfinished = [NAMES[kind] for kind in LONG if kind in self._live.busy]
-        if self._live.session is None or not unfinished:
-            return True
-        button = QMessageBox.StandardButton
-        is_or_are = "is" if len(unfinished) == 1 else "are"
-        text = f"{fmt.capital(fmt.listing(unfinished))} {is_or_are} not finished. End it?"
-        buttons = button.Yes | button.Cancel
-        answer = QMessageBox.question(self._parent, _TITLE, text, buttons, button.Cancel)
-        return answer == button.Yes
-
-    def _may_drop_changes(self) -> bool:
-        """Ask what becomes of changes that are not saved."""
-        session = self._live.session
+        session, kind = self._live.session, QMessageBox.StandardButton
+        unfinished = [NAMES[work] for work in LONG if work in self._live.busy]
+        if session is not None and unfinished:
+            is_or_are = "is" if len(unfinished) == 1 else "are"
+            text = f"{fmt.capital(fmt.listing(unfinished))} {is_or_are} not finished. End it?"
+            buttons = kind.Yes | kind.Cancel
+            answer = QMessageBox.question(self._parent, _TITLE, text, buttons, kind.Cancel)
+            if answer != kind.Yes:
+                return False
         if session is None or not session.is_modified:
             return True
-        button = QMessageBox.StandardButton
         text = f"The changes of “{session.name}” are not saved."
-        buttons = button.Save | button.Discard | button.Cancel
-        answer = QMessageBox.question(self._parent, _TITLE, text, buttons, button.Save)
-        return self.save() if answer == button.Save else answer == button.Discard
+        buttons = kind.Save | kind.Discard | kind.Cancel
+        answer = QMessageBox.question(self._parent, _TITLE, text, buttons, kind.Save)
+        return self.save() if answer == kind.Save else answer == kind.Discard
 
     def look_at_disk(self) -> None:
         """Say where the file was changed by another program, or is gone."""
@@ -245,7 +277,6 @@ class Files(QObject):
             self.notice.emit("", ())
 
     def answer_notice(self, button: str) -> None:
-        """Do what a button of the notice says."""
         self.notice.emit("", ())
         if button == "Reload":
             self.reload()
@@ -284,7 +315,6 @@ class Files(QObject):
         return Path(name) if name else None
 
     def _show_optimised(self, optimised: OptimisedStudy | None) -> None:
-        """Say what the search came to, and offer the better design."""
         self._optimised = optimised
         if optimised is None:
             return
@@ -343,7 +373,6 @@ class Files(QObject):
         return target if name else None
 
     def _show_written(self, written: Written | None) -> None:
-        """Say what was written, and offer to open it."""
         self._written = () if written is None else written.files
         if written is None:
             self.notice.emit("", ())
@@ -352,18 +381,3 @@ class Files(QObject):
         self._live.message.emit("\n".join(lines))
         main = written.files[0]
         self.notice.emit(f"{main.name} is in {main.parent}.", ("Open", "Close"))
-
-
-def _import(source: Path, target: Path, plugins: Plugins) -> None:
-    """Write a robot of another program as a study; what its file does not say is to be filled in.
-
-    Raises
-    ------
-    DesignerError
-        If there is no such robot in the file, or the study cannot be written.
-    """
-    from designer.foreign.study import ImportAnswers, load_importers, read_foreign, study_text
-    from designer.io.output import write_file
-
-    importers, _ = load_importers(plugins)
-    write_file(target, study_text(read_foreign(source, importers=importers), ImportAnswers()))

@@ -8,7 +8,8 @@ map and the candidates.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -17,17 +18,86 @@ from PySide6.QtCore import QObject, Qt, QTimer, Signal
 
 from designer.arrays import FloatArray
 from designer.errors import Fault
-from designer.explore.desktop.ages import Ages
 
-if TYPE_CHECKING:  # the start page does without, and is there the sooner
-    from designer.explore.compare import Differences, Pin
+if TYPE_CHECKING:
+    from designer.explore.answers import Differences, Pin
     from designer.explore.question import Kind, Long, Message, Question, Rope, RopePerCable
     from designer.explore.session import Session
     from designer.explore.worker import Worker
     from designer.study import Study
 
-_REST_MS = 250
-"""A pause of the hand that is longer than those of a drag."""
+_OLD_MS = 200  #: A shorter time of an older state is no matter: answers come many times a second
+
+
+class Ages(QObject):
+    """Ages of what is shown, by its name: the kind of an answer, or ``map``."""
+
+    changed = Signal()  #: Something has become old
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.outdated: frozenset[str] = frozenset()
+        """What is of an older state, and has been for a while; the same until ``changed``."""
+        self._states: dict[str, object] = {}
+        self._old_since_s: dict[str, float] = {}
+        self._timer = QTimer(self, singleShot=True)
+        self._timer.timeout.connect(self._tell)
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether something may become old by itself."""
+        return self._timer.isActive()
+
+    def renew(self, aspect: str, question: Question, present: Question | None) -> None:
+        """Take in that the answer to a question is shown."""
+        self._states[aspect] = _state_of(aspect, question)
+        self._freshen(aspect)
+        if present is not None:
+            self._compare(aspect, present, time.monotonic())
+
+    def follow(self, present: Question) -> None:
+        """Compare all that is shown with the present state."""
+        now_s = time.monotonic()  # one change makes all of them old at once
+        for aspect in self._states:
+            self._compare(aspect, present, now_s)
+
+    def _compare(self, aspect: str, present: Question, now_s: float) -> None:
+        if self._states[aspect] == _state_of(aspect, present):
+            self._freshen(aspect)
+        elif aspect not in self._old_since_s:
+            self._old_since_s[aspect] = now_s
+            if not self._timer.isActive():  # else a slider that goes on moving would put it off
+                self._timer.start(_OLD_MS)
+
+    def _freshen(self, aspect: str) -> None:
+        self._old_since_s.pop(aspect, None)
+        self.outdated -= {aspect}
+
+    def _tell(self) -> None:
+        """Say what is old by now, and wait for the rest: a timer may come a little early."""
+        before_s = time.monotonic() - _OLD_MS * 1e-3
+        since = self._old_since_s.items()
+        self.outdated = frozenset(aspect for aspect, since_s in since if since_s <= before_s)
+        if len(self.outdated) < len(since):
+            self._timer.start(_OLD_MS // 10)
+        self.changed.emit()
+
+    def forget(self) -> None:
+        self._timer.stop()
+        self.outdated = frozenset()
+        self._states.clear()
+        self._old_since_s.clear()
+
+
+def _state_of(aspect: str, question: Question) -> object:
+    if aspect == "here":
+        return question.text, question.rope, question.place.tobytes()
+    if aspect in ("map", "worst"):
+        return question.text, question.rope
+    return question.text
+
+
+_REST_MS = 250  #: A pause of the hand that is longer than those of a drag
 _SHOWN_AS: dict[Kind, tuple[str, ...]] = {
     "coarse": ("map",),
     "fine": ("map",),
@@ -59,26 +129,18 @@ class LiveSession(QObject):
 
     opened = Signal()
     """Another study is open, or none; all that was known of the last one is forgotten."""
-    changed = Signal()
-    """Text, refused entries, rope or pinned state may be different."""
-    moved = Signal()
-    """The platform may be elsewhere, or the study another."""
-    answered = Signal(str, object)
-    """The kind of a question, and its answer."""
-    begun = Signal(str)
-    """Long work of a kind was begun."""
+    changed = Signal()  #: Text, refused entries, rope or pinned state may be different
+    moved = Signal()  #: The platform may be elsewhere, or the study another
+    answered = Signal(str, object)  #: The kind of a question, and its answer
+    begun = Signal(str)  #: Long work of a kind was begun
     progressed = Signal(str, str, int, int)
     """Of long work: kind, task, steps done, and all steps (0 if not known)."""
-    busy_changed = Signal()
-    """Something was begun or has ended, or has become old."""
-    quantity_changed = Signal(str)
-    """The map is coloured by another quantity."""
+    busy_changed = Signal()  #: Something was begun or has ended, or has become old
+    quantity_changed = Signal(str)  #: The map is coloured by another quantity
     flushing = Signal()
     """The text is about to be saved or left: what was typed last is to be handed on."""
-    taken_over = Signal()
-    """The study is another, and the state before it is pinned as A."""
-    message = Signal(str)
-    """Something that a user shall read, and find again."""
+    taken_over = Signal()  #: The study is another, and the state before it is pinned as A
+    message = Signal(str)  #: Something that a user shall read, and find again
     _forgotten = Signal()
     _delivered = Signal(object)
 
@@ -96,7 +158,7 @@ class LiveSession(QObject):
         self._newest: dict[Kind, int] = {}
         self._last = self._since = 0
         self._rest = QTimer(self, singleShot=True, interval=_REST_MS)
-        self._rest.timeout.connect(self._ask_whole)
+        self._rest.timeout.connect(self._ask_all)
         self._ages = Ages()
         self._ages.changed.connect(self.busy_changed)
 
@@ -123,7 +185,7 @@ class LiveSession(QObject):
         """The state that the present one is compared with; None for nothing."""
         if self.session is None:
             return None
-        from designer.explore.compare import Pin
+        from designer.explore.answers import Pin
 
         pin = self.session.state.pin
         return pin if isinstance(pin, Pin) else None
@@ -150,14 +212,13 @@ class LiveSession(QObject):
 
     def differences(self) -> Differences | None:
         """Return what is different from the pinned state; None where nothing is pinned."""
-        from designer.explore.compare import compare
+        from designer.explore.answers import compare
 
         pin, present = self.pinned, self._present()
         return None if pin is None or present is None else compare(pin, present)
 
     def _present(self) -> Pin | None:
-        """The present state with what is known of it."""
-        from designer.explore.compare import Pin
+        from designer.explore.answers import Pin
 
         question = None if self.session is None else self.session.question()
         if self.session is None or question is None:
@@ -177,7 +238,6 @@ class LiveSession(QObject):
         self.opened.emit()
 
     def forget(self) -> None:
-        """Give up all that was asked."""
         self.question = None
         self._rest.stop()
         self._ages.forget()
@@ -188,7 +248,6 @@ class LiveSession(QObject):
         self.busy_changed.emit()
 
     def close(self) -> None:
-        """End all work; returns at once."""
         self._rest.stop()
         self._ages.forget()
         self._delivered.disconnect(self._take)
@@ -205,7 +264,6 @@ class LiveSession(QObject):
             self._follow(moving=moving)
 
     def put_all_back(self) -> None:
-        """Make the whole study as the file has it."""
         if self.session is not None and self.session.is_modified:
             self.session.settle()
             self.do(lambda session: session.set_text(session.saved_text))
@@ -216,7 +274,6 @@ class LiveSession(QObject):
             self.do(lambda session: session.set_text(text, continuous=True))
 
     def drop_rejected(self, path: str) -> None:
-        """Forget an entry that was refused."""
         if self.session is not None:
             self.session.rejected.pop(path, None)
             self.changed.emit()
@@ -240,15 +297,10 @@ class LiveSession(QObject):
     def move_exit_point(self, number: int, position_m: FloatArray, moving: bool) -> None:
         """Take an exit point, counted from 0, to (3,) [m], or on the way there."""
         faults: list[Fault] = []
-        self.do(
-            lambda session: faults.extend(session.move_exit_point(number, position_m)),
-            moving=moving,
-        )
-        if moving:
-            return
-        self.do(lambda session: session.settle())
-        for fault in faults:
-            self.message.emit(str(fault))
+        self.do(lambda s: faults.extend(s.move_exit_point(number, position_m)), moving=moving)
+        if not moving:
+            self.do(lambda session: session.settle())
+            self._tell(faults)
 
     def shift(self, offset_m: FloatArray) -> None:
         """Move the platform by (3,) [m]; several shifts are one step to undo."""
@@ -264,31 +316,29 @@ class LiveSession(QObject):
             self._follow_place(moving=True)
 
     def to_worst(self) -> None:
-        """Take the platform to the worst pose."""
         place = getattr(self.answers.get("worst"), "place", None)
         if place is not None:
             self.move(place)
 
     def to_pose(self) -> None:
-        """Take the platform to the pose of the study."""
         if self.study is not None and self.study.pose is not None:
             self.move(self.study.pose.place)
 
     def keep_pose(self) -> None:
-        """Write the place of the platform into the study."""
         faults: list[Fault] = []
         self.do(lambda session: faults.extend(session.keep_pose()))
+        self._tell(faults)
+
+    def _tell(self, faults: Iterable[Fault]) -> None:
         for fault in faults:
             self.message.emit(str(fault))
 
     # Comparing
 
     def pin(self) -> None:
-        """Compare with the present state from now on."""
         self.do(lambda session: session.set_pin(self._present()))
 
     def release(self) -> None:
-        """Compare with nothing any more."""
         self.do(lambda session: session.set_pin(None))
 
     def take_over(self, text: str) -> None:
@@ -312,7 +362,6 @@ class LiveSession(QObject):
     # Questions
 
     def colour_by(self, quantity: str) -> None:
-        """Have the map coloured by a quantity."""
         if quantity == self.quantity:
             return
         self.quantity = quantity
@@ -327,13 +376,11 @@ class LiveSession(QObject):
         self._ask_map("coarse" if moving else "fine")
 
     def begin_long(self, kind: Long, **options: Any) -> None:
-        """Begin long work on the present question."""
         if self.question is not None:
             self.begun.emit(kind)
             self._ask(kind, self.question, **options)
 
     def cancel(self, kind: Kind) -> None:
-        """End long work."""
         self._worker.cancel(kind)
 
     def _follow(self, *, moving: bool = False) -> None:
@@ -345,14 +392,12 @@ class LiveSession(QObject):
         self._see_pinned()
 
     def _follow_place(self, *, moving: bool) -> None:
-        """The same where only the platform may be elsewhere."""
+        """The same where only the platform may be elsewhere; what may be different is asked for."""
         self.moved.emit()
-        if self.session is not None:
-            self._ask_about(self.session.question(), moving=moving)
-
-    def _ask_about(self, question: Question | None, *, moving: bool) -> None:
-        """Ask for all that may be different now."""
-        before, self.question = self.question, question
+        if self.session is None:
+            return
+        before, self.question = self.question, self.session.question()
+        question = self.question
         if question is None:
             return
         self._ages.follow(question)
@@ -373,7 +418,7 @@ class LiveSession(QObject):
         if self.question is not None:
             self._ask(kind, self.question)
 
-    def _ask_whole(self) -> None:
+    def _ask_all(self) -> None:
         if self.question is not None:
             kinds: tuple[Kind, ...] = ("fine", "ropes", "worst")
             for kind in kinds:
@@ -410,21 +455,18 @@ class LiveSession(QObject):
             del self._pending[kind]
         if message.status == "done":
             self._newest[kind] = number
-            self._keep(kind, message.question, message.answer)
+            self.answers[kind] = message.answer
+            for aspect in _SHOWN_AS.get(kind, (kind,)):
+                self.answers[aspect] = message.answer
+                self._ages.renew(aspect, message.question, self.question)
+                if aspect == "ropes":
+                    self._show_best_rope()
             self.answered.emit(kind, message.answer)
         elif message.status == "failed":
             self._tell_failed(kind, message.text)
         self.busy_changed.emit()
 
-    def _keep(self, kind: Kind, question: Question, answer: Any) -> None:
-        self.answers[kind] = answer
-        for aspect in _SHOWN_AS.get(kind, (kind,)):
-            self.answers[aspect] = answer
-            self._ages.renew(aspect, question, self.question)
-            if aspect == "ropes":
-                self._begin_with_best()
-
-    def _begin_with_best(self) -> None:
+    def _show_best_rope(self) -> None:
         """Look at the best of the first candidates, where nobody has chosen another rope."""
         ropes, is_first, self._had_ropes = self.answers["ropes"], not self._had_ropes, True
         best = None if ropes is None else ropes.best

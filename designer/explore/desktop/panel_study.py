@@ -11,7 +11,6 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import (
     QComboBox,
     QGridLayout,
-    QLineEdit,
     QScrollArea,
     QSlider,
     QToolButton,
@@ -22,25 +21,22 @@ from PySide6.QtWidgets import (
 from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.widgets import (
     LineEntry,
-    beside,
     check_box,
-    emptied,
+    clear_layout,
     label,
     named,
     result,
+    row_of,
 )
 from designer.explore.session import Session
 from designer.report import format as fmt
 
 if TYPE_CHECKING:
-    from designer.errors import Fault
     from designer.explore.fields import Field
-    from designer.explore.reading import Rejected
+    from designer.explore.session import Rejected
 
-_STEPS = 1000
-"""Finer than a pixel of the slider."""
-_BESIDE = 75
-"""Width of a name that has room beside its entry in a narrow panel, also in bold [px]."""
+_STEPS = 1000  #: Finer than a pixel of the slider
+_BESIDE = 75  #: Width of a name that has room beside its entry in a narrow panel, also in bold [px]
 _OF_MANY = {"robot.anchors": "Exit points", "robot.platform.attachments": "Attachments"}
 """Lists that are sections of their own here, folded: they rarely vary."""
 _FOLDED = frozenset(_OF_MANY.values())
@@ -63,7 +59,7 @@ class PanelStudy(QWidget):
         self._changed_only = check_box(
             "changed only", "changed", self._filter, "Only what differs from the file."
         )
-        above = beside(self._find, self._changed_only)
+        above = row_of(self._find, self._changed_only)
         above.setContentsMargins(8, 0, 8, 0)
         self._inside = QWidget()
         self._list = QVBoxLayout(self._inside)
@@ -95,7 +91,7 @@ class PanelStudy(QWidget):
         self._filter()
 
     def _rebuild(self, fields: Sequence[Field]) -> None:
-        emptied(self._list)
+        clear_layout(self._list)
         self.rows, self._headings = {}, {}
         groups: dict[str, list[Field]] = {}
         for field in fields:
@@ -159,7 +155,7 @@ class FieldRow(QWidget):
         self._back.setText("↺")
         self._back.setProperty("role", "put-back")
         self._back.setAccessibleName(f"Put back {field.label}")
-        self._back.clicked.connect(self._put_back)
+        self._back.clicked.connect(lambda: live.do(lambda s: s.put_back(self.field.path)))
         policy = self._back.sizePolicy()
         policy.setRetainSizeWhenHidden(True)
         self._back.setSizePolicy(policy)
@@ -180,34 +176,26 @@ class FieldRow(QWidget):
         width = self._label.fontMetrics().horizontalAdvance(field.label)
         row = 0 if width <= _BESIDE and not has_slider else 1
         grid.addWidget(self._label, 0, 0, 1, 1 if row == 0 else 3)
-        grid.addWidget(self._choices() if field.kind == "choice" else self._entry(), row, 1)
+        if field.kind == "choice":
+            self.choices.setFixedWidth(124)
+            self.choices.addItems(list(field.choices))
+            self.choices.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+            self.choices.textActivated.connect(self._edit)
+        else:
+            self.entry.setFixedWidth(104)
+            self.entry.setAlignment(Qt.AlignmentFlag.AlignRight)
+            self.entry.editingFinished.connect(self._entered)
+            self.entry.installEventFilter(self)
+        grid.addWidget(self.choices if field.kind == "choice" else self.entry, row, 1)
         grid.addWidget(self._back, row, 2)
         if has_slider:
-            grid.addWidget(self._slider(), 1, 0)
+            self.slider.valueChanged.connect(self._slide)
+            self.slider.sliderReleased.connect(self._settle)
+            grid.addWidget(self.slider, 1, 0)
         grid.addWidget(self._fault, 2, 0, 1, 3)
         self._fault.hide()
 
-    def _entry(self) -> QLineEdit:
-        self.entry.setFixedWidth(104)
-        self.entry.setAlignment(Qt.AlignmentFlag.AlignRight)
-        self.entry.editingFinished.connect(self._entered)
-        self.entry.installEventFilter(self)
-        return self.entry
-
-    def _choices(self) -> QComboBox:
-        self.choices.setFixedWidth(124)
-        self.choices.addItems(list(self.field.choices))
-        self.choices.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.choices.textActivated.connect(self._edit)
-        return self.choices
-
-    def _slider(self) -> _Slider:
-        self.slider.valueChanged.connect(self._slid)
-        self.slider.sliderReleased.connect(self._settle)
-        return self.slider
-
     def show_field(self, field: Field, is_changed: bool) -> None:
-        """Show the field as it stands."""
         self.field, self.is_changed = field, is_changed
         font = self._label.font()
         font.setBold(is_changed)
@@ -221,11 +209,16 @@ class FieldRow(QWidget):
         self.entry.setPlaceholderText("none" if field.is_optional else "")
         has_slider = field.low is not None and field.high is not None
         if field.value_SI is not None and has_slider and not self.slider.isSliderDown():
-            self.slider.put(self._share(field.value_SI))
+            low, high = self._ends()
+            value = math.log(max(field.value_SI, 1e-300)) if field.is_log else field.value_SI
+            self.slider.put((value - low) / (high - low) if high > low else 0.0)
 
     def show_refused(self, refused: Rejected | None) -> None:
         """Show what was refused, to be mended, and what is wrong with it; None for nothing."""
-        fault = "" if refused is None else " ".join(map(_words, refused.faults))
+        fault = ""
+        for problem in () if refused is None else refused.faults:
+            expected = f" (expected {problem.expected})" if problem.expected else ""
+            fault = f"{fault} {fmt.capital(problem.problem)}{expected}.".lstrip()
         self._fault.setText(fault)
         self._fault.setVisible(bool(fault))
         self.entry.mark(fault)
@@ -234,7 +227,6 @@ class FieldRow(QWidget):
             self.choices.setCurrentText(refused.text)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Escape in the entry gives up what was entered."""
         if event.type() == QEvent.Type.KeyPress and event.key() == Qt.Key.Key_Escape:  # type: ignore[attr-defined]
             self.entry.setModified(False)
             self.entry.setText(self.field.text)
@@ -250,29 +242,19 @@ class FieldRow(QWidget):
         """The slider was let go."""
         self._live.do(Session.settle)
 
-    def _put_back(self) -> None:
-        self._live.do(lambda session: session.put_back(self.field.path))
-
     def _entered(self) -> None:
         if self.entry.isModified():
             self.entry.setModified(False)
             self._edit(self.entry.text().strip())
 
-    def _slid(self) -> None:
+    def _slide(self) -> None:
         if not self.slider.is_put:
-            self._edit(self.field.text_of(self._value()), moving=True)
+            low, high = self._ends()
+            value = low + self.slider.value() / _STEPS * (high - low)
+            value = math.exp(value) if self.field.is_log else value
+            self._edit(self.field.text_of(value), moving=True)
             if not self.slider.isSliderDown():
                 self._rest.start()
-
-    def _share(self, value_SI: float) -> float:
-        low, high = self._ends()
-        value = math.log(max(value_SI, 1e-300)) if self.field.is_log else value_SI
-        return (value - low) / (high - low) if high > low else 0.0
-
-    def _value(self) -> float:
-        low, high = self._ends()
-        value = low + self.slider.value() / _STEPS * (high - low)
-        return math.exp(value) if self.field.is_log else value
 
     def _ends(self) -> tuple[float, float]:
         low, high = self.field.low, self.field.high
@@ -282,13 +264,7 @@ class FieldRow(QWidget):
 
 
 def _group(field: Field) -> str:
-    """The section that a field is shown in."""
     return _OF_MANY.get(field.path.split("[")[0], field.group)
-
-
-def _words(fault: Fault) -> str:
-    expected = f" (expected {fault.expected})" if fault.expected else ""
-    return f"{fmt.capital(fault.problem)}{expected}."
 
 
 class _Slider(QSlider):
@@ -309,5 +285,4 @@ class _Slider(QSlider):
         self.is_put = False
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Leave the wheel to the list."""
         event.ignore()

@@ -2,35 +2,273 @@
 
 It draws when something has changed, once a change: first without smoothing of edges, and with it
 when nothing moves any more, since that is eight times the work where there is no graphics card.
+Names, handles, marks and legend lie over it: Qt draws them, sharp at every pixel density, in the
+colours of the window, and without a new frame of the scene.
 """
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from PySide6.QtCore import QPoint, QPointF, Qt, QTimer, Signal
-from PySide6.QtGui import QCloseEvent, QKeyEvent, QMouseEvent, QResizeEvent, QWheelEvent
-from PySide6.QtWidgets import QWidget
+from PySide6.QtCore import QPoint, QPointF, QRectF, Qt, QTimer, Signal
+from PySide6.QtGui import (
+    QBrush,
+    QCloseEvent,
+    QColor,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QPixmap,
+    QResizeEvent,
+    QWheelEvent,
+)
+from PySide6.QtWidgets import QFormLayout, QFrame, QLabel, QVBoxLayout, QWidget
 from pyvistaqt import QtInteractor
 
 from designer.arrays import BoolArray, FloatArray, IntArray
-from designer.explore.desktop import theme
-from designer.explore.desktop.overlay import ARROW_PX, HANDLE_PX, Legend, Overlay
-from designer.explore.desktop.scene_actors import NEAR_PX, SceneActors
+from designer.explore.desktop.stage import NEAR_PX, Painting, SceneActors
+from designer.explore.desktop.widgets import current_theme, fill, label
 from designer.report import format as fmt
+from designer.report.figures.colours import Steps
 from designer.report.figures.view import View
 
-_REST_MS = 300
-"""Longer than between two events of a drag, shorter than a look takes."""
-_SMOOTH = 8
-"""Samples a pixel once nothing moves."""
-_QUICK_S = 0.05
-"""A frame that takes no longer may be smoothed while something moves as well."""
-_CLICK_PX = 4
-"""A hand that clicks moves the mouse by no more."""
+if TYPE_CHECKING:
+    from designer.explore.answers import MapAnswer
+
+HANDLE_PX = 13.0
+ARROW_PX = 34.0
+
+
+class Overlay(QWidget):
+    """Lies over the scene and lets the mouse through."""
+
+    def __init__(self, parent: QWidget, view: Callable[[], View]) -> None:
+        super().__init__(parent)
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self._view = view
+        self.names: list[tuple[str, FloatArray]] = []
+        self.platform_m: FloatArray | None = None
+        self.chosen_m: FloatArray | None = None  # The exit point that has a handle
+        self.rule_m: list[FloatArray] = []
+        self.worst: tuple[FloatArray, str] | None = None
+        self.is_worst_old = False
+        self.pointed: tuple[QPointF, str] | None = None
+        self.note = ""
+        self.legend_px = 0  # Width of what covers the right side
+
+    def texts(self) -> list[str]:
+        marked = [self.worst[1]] if self.worst else []
+        pointed = [self.pointed[1]] if self.pointed else []
+        said = filter(None, [self.note, self.rule_text()])
+        return [*(name for name, _ in self.names), *marked, *pointed, *said]
+
+    def rule_text(self) -> str:
+        """Return the distance between the ends of the rule, along the axes as well."""
+        if len(self.rule_m) < 2:
+            return ""
+        apart = self.rule_m[1] - self.rule_m[0]
+        return f"{fmt.fixed(float(np.linalg.norm(apart)), 3)} m\nΔ {fmt.position(apart)}"
+
+    def handle_px(self, place_m: FloatArray | None) -> tuple[FloatArray, FloatArray] | None:
+        """Return where the handle of a place is, and the tip of its upward arrow [px]."""
+        if place_m is None:
+            return None
+        centre = self._view().pixels(place_m)
+        return centre, centre - np.array([0.0, ARROW_PX])
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(QColor(current_theme().muted))
+        for name, position_m in self.names:
+            x, y = self._view().pixels(position_m)
+            width = painter.fontMetrics().horizontalAdvance(name)
+            has_room = x + 6 + width < self.width() - self.legend_px
+            painter.drawText(QPointF(x + 6 if has_room else x - 6 - width, y - 6), name)
+        self._draw_worst(painter)
+        for place_m in (self.platform_m, self.chosen_m):
+            self._draw_handle(painter, place_m)
+        self._draw_rule(painter)
+        if self.pointed is not None:
+            place, text = self.pointed
+            self._write_boxed(painter, place + QPointF(14, 18), text)
+        if self.note:
+            self._write_boxed(painter, QPointF(10, 10), self.note)
+
+    def _draw_worst(self, painter: QPainter) -> None:
+        if self.worst is None:
+            return
+        place, text = self.worst
+        x, y = self._view().pixels(place)
+        marked = current_theme().muted if self.is_worst_old else current_theme().warning
+        for width, colour in ((5.0, current_theme().base), (2.0, marked)):
+            painter.setPen(QPen(QColor(colour), width))
+            painter.drawEllipse(QPointF(x, y), 8, 8)
+            painter.drawLine(QPointF(x - 13, y), QPointF(x - 4, y))
+            painter.drawLine(QPointF(x + 4, y), QPointF(x + 13, y))
+        painter.setPen(QColor(marked))
+        self._write(painter, QPointF(x + 16, y - 8), text)
+
+    def _draw_rule(self, painter: QPainter) -> None:
+        ends = [QPointF(*self._view().pixels(end)) for end in self.rule_m]
+        for width, colour in ((4.5, current_theme().base), (1.8, current_theme().warning)):
+            painter.setPen(QPen(QColor(colour), width))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawPolyline(ends)
+            for end in ends:
+                painter.drawEllipse(end, 4, 4)
+        if len(ends) == 2:
+            lower = max(ends, key=lambda end: end.y())
+            self._write_boxed(painter, lower + QPointF(8, 8), self.rule_text())
+
+    def _draw_handle(self, painter: QPainter, place_m: FloatArray | None) -> None:
+        handle = self.handle_px(place_m)
+        if handle is None:
+            return
+        centre, tip = QPointF(*handle[0]), QPointF(*handle[1])
+        for width, colour in ((4.5, current_theme().base), (1.8, current_theme().accent)):
+            painter.setPen(QPen(QColor(colour), width))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawEllipse(centre, HANDLE_PX, HANDLE_PX)
+            painter.drawLine(QPointF(centre.x(), centre.y() - HANDLE_PX), tip)
+            painter.drawPolyline([tip + QPointF(-5, 6), tip, tip + QPointF(5, 6)])
+
+    def _write(self, painter: QPainter, place: QPointF, text: str) -> None:
+        """Write on a ground that keeps it readable, inside the picture."""
+        box = QRectF(painter.boundingRect(QRectF(0, 0, 400, 200), 0, text))
+        left = min(place.x(), self.width() - box.width() - 6)
+        ground = QColor(current_theme().base)
+        ground.setAlpha(200)
+        area = QRectF(max(left, 4), max(place.y() - box.height(), 4), box.width(), box.height())
+        painter.fillRect(area.adjusted(-3, -1, 3, 1), ground)
+        painter.drawText(area, 0, text)
+
+    def _write_boxed(self, painter: QPainter, place: QPointF, text: str) -> None:
+        box = QRectF(painter.boundingRect(QRectF(0, 0, 460, 400), 0, text))
+        box.moveTo(place)
+        box.adjust(0, 0, 16, 10)
+        box.moveRight(min(box.right(), self.width() - self.legend_px - 4))
+        box.moveLeft(max(box.left(), 4))
+        box.moveBottom(min(box.bottom(), self.height() - 4))
+        ground = QColor(current_theme().raised)
+        ground.setAlpha(235)
+        painter.setPen(QPen(QColor(current_theme().border)))
+        painter.setBrush(ground)
+        painter.drawRoundedRect(box, 4, 4)
+        painter.setPen(QColor(current_theme().ink))
+        painter.drawText(box.adjusted(8, 5, -8, -5), 0, text)
+
+
+_WIDTH_PX, _BAR_PX, _MARGIN_PX = 136, 14, 8
+
+
+class Legend(QFrame):
+    """Stands over the scene and lets the mouse through."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setObjectName("legend")
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setFixedWidth(_WIDTH_PX)
+        self.hide()
+        self.steps: Steps | None = None
+        self._meanings: tuple[str, ...] = ()
+        self._title, self._note = label("", "heading"), label("", "muted")
+        self._bar, self._keys = ColourBar(), QFormLayout()
+        self._keys.setVerticalSpacing(4)
+        for text in (self._title, self._note):
+            text.setWordWrap(True)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(*[_MARGIN_PX] * 4)
+        fill(rows, self._title, self._note, self._bar, self._keys)
+
+    @property
+    def texts(self) -> list[str]:
+        labels = [] if self.steps is None else [fmt.trimmed(float(t), 6) for t in self.steps.ticks]
+        return [self._title.text(), self._note.text(), *labels[::-1], *self._meanings]
+
+    def show_painting(self, painting: Painting, answer: MapAnswer) -> None:
+        """Show what colours mean: quantity, cables, scale if there is one, and other colours."""
+        keys = painting.keys(answer)
+        self.steps, self._meanings = painting.steps, tuple(key.meaning for key in keys)
+        self._title.setText(painting.title)
+        self._note.setText(painting.note(answer))
+        self._bar.show_steps(painting.steps, painting.is_old)
+        while self._keys.rowCount():
+            self._keys.removeRow(0)
+        for key in keys:
+            meaning = label(key.meaning)
+            meaning.setWordWrap(True)
+            picture = QPixmap(_BAR_PX, 11)
+            picture.fill(_map_colour(QColor(key.colour), painting.is_old))
+            if key.stripes:
+                painter = QPainter(picture)
+                stripes = QBrush(QColor(key.stripes), Qt.BrushStyle.BDiagPattern)
+                painter.fillRect(picture.rect(), stripes)
+                painter.end()
+            swatch = QLabel()
+            swatch.setPixmap(picture)
+            self._keys.addRow(swatch, meaning)
+        self.show()
+        self.resize(_WIDTH_PX, self.heightForWidth(_WIDTH_PX))
+
+
+class ColourBar(QWidget):
+    """The colours of a scale and its ticks, the largest value at the top."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._steps: Steps | None = None
+        self._is_old = False
+
+    def show_steps(self, steps: Steps | None, is_old: bool) -> None:
+        """Show a scale, grey where it is of an older state; nothing for None."""
+        self._steps, self._is_old = steps, is_old
+        lines = 0.0 if steps is None else 1.25 * len(steps.ticks) + 1.2
+        self.setFixedHeight(round(lines * self.fontMetrics().height()))
+        self.setVisible(steps is not None)
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        if self._steps is None:
+            return
+        painter, line = QPainter(self), self.fontMetrics().height()
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        colours, count = self._steps.colormap, self._steps.colormap.N
+        height = self.height() - 1.2 * line
+
+        def at(number: float) -> float:
+            return 0.5 * line + height * (1.0 - number / count)
+
+        painter.setPen(Qt.PenStyle.NoPen)
+        for number in range(count):
+            painter.setBrush(_map_colour(QColor.fromRgbF(*colours(number)), self._is_old))
+            painter.drawRect(QRectF(0, at(number + 1), _BAR_PX, height / count + 0.5))
+        painter.setPen(QColor(current_theme().ink))
+        for number, edge in enumerate(self._steps.edges):
+            if edge in self._steps.ticks:
+                y = at(number)
+                painter.drawLine(QPointF(_BAR_PX, y), QPointF(_BAR_PX + 4, y))
+                place = QRectF(_BAR_PX + 8, y - 0.5 * line, _WIDTH_PX, line)
+                painter.drawText(place, Qt.AlignmentFlag.AlignVCenter, fmt.trimmed(float(edge), 6))
+
+
+def _map_colour(colour: QColor, is_old: bool) -> QColor:
+    """Return a colour of the map; grey where that is of an older state."""
+    grey = 0.2126 * colour.redF() + 0.7152 * colour.greenF() + 0.0722 * colour.blueF()
+    return QColor.fromRgbF(grey, grey, grey) if is_old else colour
+
+
+_REST_MS = 300  #: Longer than between two events of a drag, shorter than a look takes
+_SMOOTH = 8  #: Samples a pixel once nothing moves
+_QUICK_S = 0.05  #: A frame that takes no longer may be smoothed while something moves as well
+_CLICK_PX = 4  #: A hand that clicks moves the mouse by no more
 _STEPS = {
     Qt.Key.Key_Left: (-1, 0, 0),
     Qt.Key.Key_Right: (1, 0, 0),
@@ -40,12 +278,9 @@ _STEPS = {
     Qt.Key.Key_PageDown: (0, 0, -1),
 }
 """To the right and away from the viewer, along the nearest axis of the frame, and upward."""
-_TURN_RAD = float(np.radians(1.0))
-"""How far a key turns the platform."""
-_SNAP_PX = 8.0
-"""As near an exit point takes the coordinate of another."""
-_ALONG = 1e-9
-"""Of a normal, along an axis that lies in its plane."""
+_TURN_RAD = float(np.radians(1.0))  #: How far a key turns the platform
+_SNAP_PX = 8.0  #: As near an exit point takes the coordinate of another
+_ALONG = 1e-9  #: Of a normal, along an axis that lies in its plane
 
 
 def snapped(
@@ -80,8 +315,7 @@ class SceneView(QtInteractor):
     asks_for_turn = Signal(object)
     """The rotation vector (3,) that the platform is to be turned by [rad]."""
     resized = Signal()
-    pointed_at = Signal(object)
-    """What the mouse is over: a `Hit`, or None."""
+    pointed_at = Signal(object)  #: What the mouse is over: a `Hit`, or None
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent, auto_update=False, lighting="none")
@@ -111,8 +345,7 @@ class SceneView(QtInteractor):
         self._hover.timeout.connect(self._point)
 
     def follow_theme(self) -> None:
-        """Take the colours of the theme."""
-        self.set_background(theme.current().base)
+        self.set_background(current_theme().base)
         self.stage.follow_theme()
         self.redraw()
 
@@ -127,7 +360,6 @@ class SceneView(QtInteractor):
         self.overlay.update()
 
     def paintGL(self) -> None:
-        """Draw one frame."""
         start = time.perf_counter()
         self.view.aim(self.renderer)
         self._Iren.EnableRenderOn()
@@ -142,7 +374,6 @@ class SceneView(QtInteractor):
             self.update()
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        """Draw nothing any more."""
         for timer in (self._rest, self._hover):
             timer.stop()
         super().closeEvent(event)
@@ -158,7 +389,6 @@ class SceneView(QtInteractor):
         self.resized.emit()
 
     def place_legend(self) -> None:
-        """Put the legend into its corner."""
         self.colour_legend.move(self.width() - self.colour_legend.width() - 12, 12)
         self.overlay.legend_px = self.colour_legend.width() + 12
 
@@ -175,7 +405,6 @@ class SceneView(QtInteractor):
             self._grip_offset = np.zeros(3) if under is None else self._gripped_m - under
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Drag, or tell what the mouse is over."""
         pixel = event.position().toPoint()
         if self._pressed is None:
             self._last = pixel
@@ -257,7 +486,6 @@ class SceneView(QtInteractor):
             self.overlay.update()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Zoom at the mouse."""
         factor = 1.0015 ** event.angleDelta().y()
         self._see(self.view.zoomed(factor, event.position().x(), event.position().y()))
 
@@ -267,7 +495,6 @@ class SceneView(QtInteractor):
         self.redraw()
 
     def leaveEvent(self, event: Any) -> None:
-        """Forget what the mouse was over."""
         self._hover.stop()
         self._tell(None)
 
@@ -335,7 +562,6 @@ class SceneView(QtInteractor):
 
     @property
     def _gripped_m(self) -> FloatArray:
-        """Where what is gripped is (3,) [m]."""
         if self._gripped is not None:
             return np.asarray(self.exit_points_m[self._gripped])
         assert self.overlay.platform_m is not None
@@ -395,6 +621,5 @@ class SceneView(QtInteractor):
         self.pointed_at.emit(hit)
 
     def write_pointed(self, text: str) -> None:
-        """Write beside the mouse what it is over."""
         self.overlay.pointed = (QPointF(self._last), text) if text else None
         self.overlay.update()

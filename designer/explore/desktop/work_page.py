@@ -12,11 +12,10 @@ from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QResizeEvent, QStandardItemModel
 from PySide6.QtWidgets import QBoxLayout, QComboBox, QHBoxLayout, QSlider, QVBoxLayout, QWidget
 
-from designer.explore.desktop.actors import Hit
 from designer.explore.desktop.live_session import LiveSession
-from designer.explore.desktop.painting import Painting
 from designer.explore.desktop.scene import SceneView
-from designer.explore.desktop.widgets import DropDown, Notice, beside, check_box, fill, named
+from designer.explore.desktop.stage import Hit, Painting
+from designer.explore.desktop.widgets import DropDown, Notice, check_box, fill, named, row_of
 from designer.explore.quantities import BY_KEY, QUANTITIES, category_labels
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
@@ -27,8 +26,7 @@ from designer.report.figures.view import clear_azimuth_rad, facing_azimuth_rad, 
 
 if TYPE_CHECKING:
     from designer.arrays import FloatArray
-    from designer.explore.here import Here
-    from designer.explore.map import MapAnswer, WorstAnswer
+    from designer.explore.answers import MapAnswer, PoseAnswer, WorstAnswer
     from designer.explore.measurements import Residuals
     from designer.study import Study
 
@@ -36,21 +34,17 @@ FACTORS = (1, 2, 5, 10, 20, 50)
 _ELEVATION_RAD = float(np.radians(28.0))
 """Floor, walls and top of a region are all seen from there."""
 _FRAME_MS = 40
-_LONGEST_S = 20.0
-"""A path that takes longer is played faster."""
+_LONGEST_PATH_S = 20.0  #: A path that takes longer is played faster
 _MODE_SHARE, _MODE_RAD = 0.04, 0.25
 """How far a mode is drawn to move, over the size of the scene, and how far to turn."""
-_BAR_PX, _ONE_ROW_PX = 372, 700
-"""The narrowest bar, and how narrow it is in two rows."""
-_BRIGHTEST = 5.0
-"""Residual of the brightest rows, in units of noise: by chance none is as large."""
+_BAR_PX, _ONE_ROW_PX = 372, 700  #: The narrowest bar, and how narrow it is in two rows
+_BRIGHTEST = 5.0  #: Residual of the brightest rows, in units of noise: by chance none is as large
 
 
 class WorkPage(QWidget):
     """Scene, the bar above it, the slider of the slice, and a notice when there is one."""
 
-    notice_answered = Signal(str)
-    """The name of the button of the notice that was pressed."""
+    notice_answered = Signal(str)  #: The name of the button of the notice that was pressed
 
     def __init__(self, live: LiveSession) -> None:
         super().__init__()
@@ -58,11 +52,10 @@ class WorkPage(QWidget):
         self.scene = SceneView(self)
         self.map: MapAnswer | None = None
         self.painting: Painting | None = None
-        self._pose_answer: Here | None = None
+        self._pose_answer: PoseAnswer | None = None
         self._study: Study | None = None
         self._place = np.zeros(6)
         self._fixed_steps: Steps | None = None
-        self._hit: Hit | None = None
         self._residuals: Residuals | None = None
         self._shows_rows = self._is_old = False
         self._view = "home"
@@ -75,7 +68,10 @@ class WorkPage(QWidget):
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 0, 0, 0)
         rows.setSpacing(0)
-        self.height_slider = self._slice_slider()
+        self.height_slider = named(QSlider(Qt.Orientation.Vertical), "slice height")
+        self.height_slider.setAccessibleName("Height of the slice")
+        self.height_slider.setRange(0, 100)
+        self.height_slider.setValue(50)
         fill(rows, self._bar(), self._notice)
         middle = QHBoxLayout()
         middle.setSpacing(0)
@@ -84,12 +80,11 @@ class WorkPage(QWidget):
         rows.addLayout(middle, 1)
         for box in (self.surface, self.slice):
             box.setChecked(True)
-        self._connect()
-
-    def _connect(self) -> None:
-        scene, live = self.scene, self._live
-        scene.pointed_at.connect(self._point)
-        scene.resized.connect(self._look_again)
+        slider, scene = self.height_slider, self.scene
+        slider.valueChanged.connect(lambda: self._move_slice(slider.isSliderDown()))
+        slider.sliderReleased.connect(lambda: self._move_slice(False))
+        scene.pointed_at.connect(lambda hit: scene.write_pointed(self.read(hit) if hit else ""))
+        scene.resized.connect(lambda: None if scene.is_turned else self.look(self._view))
         scene.asks_for_position.connect(live.move)
         scene.asks_for_position.connect(lambda: self.plays_path.setChecked(False))
         scene.asks_for_exit_point.connect(live.move_exit_point)
@@ -98,7 +93,9 @@ class WorkPage(QWidget):
         live.changed.connect(self._follow_study)
         live.moved.connect(self._follow_place)
         live.busy_changed.connect(self._show_age)
-        live.quantity_changed.connect(self._colour_by)
+        live.quantity_changed.connect(
+            lambda key: self.quantity.setCurrentIndex(self.quantity.findData(key))
+        )
         live.listen(self._show_here, "here")
         live.listen(self.show_map, "coarse", "fine")
         live.listen(self._show_worst, "worst")
@@ -111,18 +108,10 @@ class WorkPage(QWidget):
             self.quantity.addItem(quantity.title, quantity.key)
             self.quantity.setItemData(number, quantity.definition, Qt.ItemDataRole.ToolTipRole)
         self.quantity.currentIndexChanged.connect(self._quantity_chosen)
-        self.surface = check_box(
-            "show surface",
-            "Surface",
-            self._show_surfaces,
-            "The outside of the region, seen from within.",
-        )
-        self.slice = check_box(
-            "show slice",
-            "Slice",
-            self._show_surfaces,
-            "A level slice through the region; the slider moves it.",
-        )
+        show, tip = self._show_surfaces, "The outside of the region, seen from within."
+        self.surface = check_box("show surface", "Surface", show, tip)
+        tip = "A level slice through the region; the slider moves it."
+        self.slice = check_box("show slice", "Slice", show, tip)
         self.exaggeration = named(
             QComboBox(),
             "sag exaggeration",
@@ -132,68 +121,41 @@ class WorkPage(QWidget):
         for factor in FACTORS:
             self.exaggeration.addItem("true sag" if factor == 1 else f"sag × {factor}", factor)
         self.exaggeration.currentIndexChanged.connect(self._show_place)
-        self.holds_scale = check_box(
-            "hold scale",
-            "Hold the scale",
-            self._hold,
-            "The colours keep their meaning while the study changes.",
-        )
-        self.rule = check_box(
-            "rule",
-            "Rule",
-            self.scene.measure,
-            "Click two points of robot or map: the distance between them, and along the axes "
-            "(Ctrl+M).",
-        )
-        self.plays_path = check_box(
-            "play path",
-            "Play",
-            self._play,
-            "Moves the platform along the path of the study (Ctrl+P).",
-        )
+        tip = "The colours keep their meaning while the study changes."
+        self.holds_scale = check_box("hold scale", "Lock colour scale", self._lock_scale, tip)
+        tip = "Click two points of robot or map: the distance, also along the axes (Ctrl+M)."
+        self.rule = check_box("rule", "Measure", self.scene.measure, tip)
+        tip = "Moves the platform along the path of the study (Ctrl+P)."
+        self.plays_path = check_box("play path", "Play", self._play, tip)
         self.rule.setShortcut("Ctrl+M")
         self.plays_path.setShortcut("Ctrl+P")
-        colours = beside("Colour by", self.quantity, self.holds_scale, None)
-        shown = beside(
-            self.surface, self.slice, self.exaggeration, self.rule, self.plays_path, None
-        )
+        colours = row_of("Colour by", self.quantity, self.holds_scale, None)
+        boxes = self.surface, self.slice, self.exaggeration, self.rule, self.plays_path
         bar = QWidget()
         bar.setMinimumWidth(_BAR_PX)
         self._rows = QBoxLayout(QBoxLayout.Direction.LeftToRight, bar)
         self._rows.setSizeConstraint(QBoxLayout.SizeConstraint.SetNoConstraint)
         self._rows.setContentsMargins(8, 4, 8, 4)
-        fill(self._rows, colours, shown)
+        fill(self._rows, colours, row_of(*boxes, None))
         self._rows.setStretch(1, 1)
         return bar
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Break the bar where it has no room in a row."""
         direction = QBoxLayout.Direction
         is_wide = self.width() >= _ONE_ROW_PX
         self._rows.setDirection(direction.LeftToRight if is_wide else direction.TopToBottom)
         super().resizeEvent(event)
 
-    def _slice_slider(self) -> QSlider:
-        slider = named(QSlider(Qt.Orientation.Vertical), "slice height")
-        slider.setAccessibleName("Height of the slice")
-        slider.setRange(0, 100)
-        slider.setValue(50)
-        slider.valueChanged.connect(lambda: self._move_slice(slider.isSliderDown()))
-        slider.sliderReleased.connect(lambda: self._move_slice(False))
-        return slider
-
     def _move_slice(self, moving: bool) -> None:
         self._live.move_slice(self.height_slider.value() / 100.0, moving)
 
     def follow_theme(self) -> None:
-        """Take the colours of the theme."""
         self.scene.follow_theme()
         self._show_map()
 
     # What is shown
 
     def _follow_study(self) -> None:
-        """Show the study, and whether its map can be of a rope."""
         study, is_first = self._live.study, self._live.question is None
         if study is not None and (study is not self._study or is_first):
             self._show_study(study, afresh=is_first)
@@ -229,8 +191,7 @@ class WorkPage(QWidget):
             if not self.plays_path.isChecked():  # else with its cables, once they are answered
                 self._show_place()
 
-    def _show_here(self, answer: Here | None) -> None:
-        """Show the cables in their true shape."""
+    def _show_here(self, answer: PoseAnswer | None) -> None:
         self._pose_answer = answer
         self._show_place()
 
@@ -274,7 +235,7 @@ class WorkPage(QWidget):
             self.plays_path.setChecked(False)
         elif "here" not in self._live.busy:
             time_s = motion.time_s - motion.time_s[0]
-            pace = max(float(time_s[-1]) / _LONGEST_S, 1.0)
+            pace = max(float(time_s[-1]) / _LONGEST_PATH_S, 1.0)
             number = int(np.searchsorted(time_s, (time.monotonic() - self._play_start_s) * pace))
             is_over, number = number >= len(time_s) - 1, min(number, len(time_s) - 1)
             faster = f", {fmt.number(pace, 2)} times as fast" if pace > 1.0 else ""
@@ -311,7 +272,6 @@ class WorkPage(QWidget):
         self._show_map()
 
     def _show_age(self) -> None:
-        """Show in grey what is of an older state of the study."""
         outdated, overlay = self._live.outdated, self.scene.overlay
         if ("map" in outdated) != self._is_old:
             self._is_old = "map" in outdated
@@ -321,7 +281,6 @@ class WorkPage(QWidget):
             overlay.update()
 
     def _show_worst(self, worst: WorstAnswer | None) -> None:
-        """Mark the worst pose."""
         marked = None
         if worst is not None and worst.place is not None:
             marked = (worst.place[:3], "worst pose")
@@ -339,11 +298,11 @@ class WorkPage(QWidget):
         self._show_rows()
 
     def _show_rows(self) -> None:
-        if self._shows_rows and self._residuals is not None:
-            rows = self._residuals
-            self.scene.stage.put_rows(rows.position_m, rows.size(), _BRIGHTEST)
-        else:
-            self.scene.stage.put_rows(np.empty((0, 3)), np.empty(0), _BRIGHTEST)
+        rows = self._residuals if self._shows_rows else None
+        position_m, size = np.empty((0, 3)), np.empty(0)
+        if rows is not None:
+            position_m, size = rows.position_m, rows.size()
+        self.scene.stage.put_rows(position_m, size, _BRIGHTEST)
         self._write_note()
         self.scene.redraw()
 
@@ -392,11 +351,8 @@ class WorkPage(QWidget):
         self._show_map()
         self._live.colour_by(str(self.quantity.currentData()))
 
-    def _colour_by(self, key: str) -> None:
-        self.quantity.setCurrentIndex(self.quantity.findData(key))
-
-    def _hold(self, is_held: bool) -> None:
-        self._fixed_steps = self.painting.steps if is_held and self.painting is not None else None
+    def _lock_scale(self, is_locked: bool) -> None:
+        self._fixed_steps = self.painting.steps if is_locked and self.painting is not None else None
         self._show_map()
 
     # Where one looks from
@@ -408,9 +364,15 @@ class WorkPage(QWidget):
         if study is None:
             return
         sides = {"top": (-90.0, 89.0), "front": (-90.0, 0.0), "side": (0.0, 0.0)}
-        azimuth, elevation = self._home(study)
+        robot, elevation = study.robot, _ELEVATION_RAD
         if view in sides:
             azimuth, elevation = (float(angle) for angle in np.radians(sides[view]))
+        elif robot.is_planar:
+            azimuth = facing_azimuth_rad(robot.upright[0, :2])
+        else:
+            centre = np.broadcast_to(stage.bounds_m.mean(axis=0), robot.exit_points_m.shape)
+            lines = np.stack([robot.exit_points_m, centre], axis=1)
+            azimuth = clear_azimuth_rad(lines, elevation)
         # clear of the legend at the right
         width, height = max(self.scene.width(), 1), max(self.scene.height(), 1)
         right = 0.97 - self.scene.colour_legend.width() / width
@@ -419,25 +381,7 @@ class WorkPage(QWidget):
         self.scene.view = fitting(corners, azimuth, elevation, frame, (width, height))
         self.scene.redraw()
 
-    def _look_again(self) -> None:
-        if not self.scene.is_turned:
-            self.look(self._view)
-
-    def _home(self, study: Study) -> tuple[float, float]:
-        robot = study.robot
-        if robot.is_planar:
-            return facing_azimuth_rad(robot.upright[0, :2]), _ELEVATION_RAD
-        stage = self.scene.stage
-        centre = stage.bounds_m.mean(axis=0)
-        lines = np.stack([robot.exit_points_m, np.broadcast_to(centre, robot.exit_points_m.shape)])
-        return clear_azimuth_rad(np.swapaxes(lines, 0, 1), _ELEVATION_RAD), _ELEVATION_RAD
-
     # What the mouse is over
-
-    def _point(self, hit: Hit | None) -> None:
-        self._hit = hit
-        text = "" if hit is None else self.read(hit)
-        self.scene.write_pointed(text)
 
     def read(self, hit: Hit) -> str:
         """Return what the map says at the grid point next to a place, and where that is."""

@@ -11,13 +11,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from designer.documents.bounds import MOST_CABLES
-from designer.documents.fields import JsonSchema, WholeNumber
-from designer.documents.section import words_at
+from designer.documents.fields import JsonSchema, WholeNumber, words_at
 from designer.effects.effect import Effect
-from designer.io.config.columns import ColumnSection
 from designer.io.config.effects import field_of
-from designer.io.config.regions import OrientationSection
-from designer.io.config.schema import PathSection, PoseSection, StudySection
+from designer.io.config.machine import OrientationSection
+from designer.io.config.schema import ColumnSection, PathSection, PoseSection, StudySection
 
 _SHORTHANDS = (PoseSection, OrientationSection, ColumnSection, PathSection)
 """Sections that the file may also give as the value of their first field alone."""

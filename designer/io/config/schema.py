@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 from math import inf
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import (
     AfterValidator,
@@ -25,24 +25,255 @@ from pydantic import (
 from designer.arrays import FloatArray, frozen_array
 from designer.documents import fields
 from designer.documents.bounds import MOST_CABLES, MOST_SAMPLES
+from designer.documents.fields import (
+    Section,
+    Text,
+    WholeNumber,
+    bounded,
+    config_field,
+    list_of,
+    mapping,
+    refusal,
+)
 from designer.documents.plain import CONFIG_FORMAT
-from designer.documents.section import Section, config_field
-from designer.io.config import regions
-from designer.io.config.columns import Columns
-from designer.io.config.machine import ConfiguredCable, LoadCaseSection, RobotSection
-from designer.io.config.uncertainty import UncertaintySection
-from designer.model.cable import MaterialName, Preference, Trust
-from designer.model.duty import RUNNING_ROPE, DutyClass
+from designer.io.config.machine import (
+    EULER,
+    QUATERNION,
+    ROTATION_VECTOR,
+    AnyRegion,
+    ConfiguredCable,
+    EulerSection,
+    FollowingSection,
+    LoadCaseSection,
+    OrientationRangeSection,
+    OrientationSection,
+    Quaternion,
+    RobotSection,
+    only_one_of,
+    rotation_vector_rad,
+    word_or_list,
+)
+from designer.measured.assign import COVARIATE, IGNORE, column_hint, dimension_of
+from designer.model.cable import MaterialName, Preference, PriceList, Trust
 from designer.model.measurements import LogColumn, LogSession, Measurements, Reading
 from designer.model.motion import Ends
-from designer.model.price_list import PriceList
 from designer.model.region import Region, Sampling
 from designer.model.robot import SAG_MAX, Poses
-from designer.model.rope_life import RopeLife
 from designer.model.space import Orientations
+from designer.model.uncertainty import INPUTS, Normal, Spread, Uncertainty, Uniform
+from designer.model.winches import RUNNING_ROPE, DutyClass, RopeLife
 from designer.model.workspace import HangsBelow, Workspace
 from designer.study import CableGroup, DocumentControl, Entry, Objective, RopeLimits, Selection
-from designer.units import describe
+from designer.units import (
+    NUMBER,
+    TEMPERATURE,
+    Dimension,
+    QuantityError,
+    describe,
+    read_quantity,
+    unit_conversion,
+)
+
+_TARGET = f"a column of ours such as 'length_1_m', or '{IGNORE}', or '{COVARIATE}'"
+
+
+def _target(value: object) -> str:
+    if not isinstance(value, str):
+        raise refusal(f"{describe(value)} is not a name", _TARGET)
+    if value not in (IGNORE, COVARIATE) and dimension_of(value) is None:
+        raise refusal(f"{describe(value)} is no column of ours", _TARGET + column_hint(value))
+    return value
+
+
+class ColumnSection(Section):
+    """What one column of a log is to us, and in which unit.
+
+    The value is the reading in its unit, or ``scale`` · reading, plus ``offset``.
+    """
+
+    to: Annotated[str, BeforeValidator(_target)] = config_field(expected=_TARGET)
+    """Our name, such as length_1_m; ignore; or covariate."""
+    unit: Text | None = None
+    """Unit of the readings."""
+    scale: Annotated[float, bounded("scale of a column")] | None = None
+    """Factor from the readings to ours; instead of a unit."""
+    offset: Any = None
+    """What is added after that, as a quantity."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_name(cls, value: object) -> object:
+        if not isinstance(value, str | dict):
+            expected = f"{_TARGET}, or {{to: …, unit: …}}"
+            raise refusal(f"{describe(value)} is not a name", expected)
+        return {"to": value} if isinstance(value, str) else value
+
+    @model_validator(mode="after")
+    def _check_conversion(self) -> ColumnSection:
+        self.conversion()
+        return self
+
+    def conversion(self) -> tuple[float, float]:
+        """Return scale and offset from the log's numbers to ours."""
+        dimension = dimension_of(self.to)
+        if dimension is None:
+            fields_set = self.model_fields_set - {"to"}
+            if fields_set:
+                raise refusal(f"'{self.to}' takes no {sorted(fields_set)[0]}", f"'{self.to}' alone")
+            return 1.0, 0.0
+        scale, offset = self._scale(dimension)
+        return scale, offset + self._offset(dimension)
+
+    @property
+    def meaning(self) -> str:
+        """What becomes of a reading, for the table of inputs."""
+        scale, offset = self.conversion()
+        if (scale, offset) == (1.0, 0.0):
+            return self.to
+        shift = f" {'-' if offset < 0 else '+'} {abs(offset):.10g}" if offset else ""
+        return f"{self.to} = {scale:.10g} · reading{shift}"
+
+    def _scale(self, dimension: Dimension) -> tuple[float, float]:
+        if self.scale is not None and self.unit is not None:
+            raise refusal("both a unit and a scale are given", "one of the two")
+        if self.scale == 0.0:
+            raise refusal("the scale is zero", "a factor from the log's numbers to ours")
+        if self.unit is None:
+            return 1.0 if self.scale is None else self.scale, 0.0
+        try:
+            return unit_conversion(self.unit, dimension)
+        except QuantityError as error:
+            _, mark, hint = error.expected.partition("; did you mean")
+            expected = f"a unit as in '{dimension.example}'" if dimension.unit else "none"
+            problem = f"{describe(self.unit)} is no unit of {dimension.noun}"
+            raise refusal(problem, f"{expected}{mark}{hint}") from None
+
+    def _offset(self, dimension: Dimension) -> float:
+        # '5 K' as a difference is not 5 K as a temperature
+        kind = NUMBER if dimension == TEMPERATURE else dimension
+        try:
+            return 0.0 if self.offset is None else read_quantity(self.offset, kind)
+        except QuantityError as error:
+            raise refusal(f"the offset {error.problem}", error.expected) from None
+
+
+Columns = Annotated[dict[str, ColumnSection], BeforeValidator(mapping)]
+
+
+_ENDS = "a half width or [lowest, highest]"
+
+
+def _rising(ends: tuple[float, float]) -> tuple[float, float]:
+    if ends[0] >= ends[1]:
+        raise refusal(f"the lower end {ends[0]:g} is not below the upper {ends[1]:g}", _ENDS)
+    return ends
+
+
+def _tag(value: object) -> str:
+    return "ends" if isinstance(value, list | tuple) else "a half width"
+
+
+RelativeEnds = Annotated[
+    tuple[Annotated[float, bounded("deviation")], Annotated[float, bounded("deviation")]],
+    list_of(2, 2, _ENDS),
+    AfterValidator(_rising),
+]
+PointEnds = Annotated[
+    tuple[Annotated[float, bounded("shift")], Annotated[float, bounded("shift")]],
+    list_of(2, 2, _ENDS),
+    AfterValidator(_rising),
+]
+Width = Annotated[
+    Annotated[float, bounded("half width"), Tag("a half width")]
+    | Annotated[RelativeEnds, Tag("ends")],
+    Discriminator(_tag),
+]
+WidthOfPoint = Annotated[
+    Annotated[float, bounded("scatter of points"), Tag("a half width")]
+    | Annotated[PointEnds, Tag("ends")],
+    Discriminator(_tag),
+]
+
+
+class SpreadSection(Section):
+    """The distribution of a relative deviation."""
+
+    example: ClassVar = "2 %"
+    standard_deviation: Annotated[float, bounded("relative scatter")] | None = config_field(
+        "Scatter of the {title}"
+    )
+    """Standard deviation, of a normal distribution, relative. {meaning}"""
+    uniform: Width | None = config_field("Range of the {title}")
+    """Half width of a uniform distribution, relative, or its two ends. {meaning}"""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _is_one_distribution(cls, given: object) -> object:
+        expected = f"{{standard_deviation: {cls.example}}} for a normal distribution, or "
+        expected += f"{{uniform: {cls.example}}}"
+        if not isinstance(given, dict):
+            raise refusal(f"{describe(given)} is not a distribution", expected)
+        unknown = [name for name in given if name not in cls.model_fields]
+        if unknown:
+            raise refusal(f"the distribution {describe(unknown[0])} is not known", expected)
+        count = sum(value is not None for value in given.values())
+        if count != 1:
+            raise refusal(f"names {'two distributions' if count else 'no distribution'}", expected)
+        return given
+
+    def value(self) -> Spread:
+        """Return the distribution."""
+        if self.standard_deviation is not None:
+            return Normal(self.standard_deviation)
+        assert self.uniform is not None  # see above
+        if isinstance(self.uniform, tuple):
+            return Uniform(*self.uniform)
+        return Uniform(-self.uniform, self.uniform)
+
+
+class PointSpreadSection(SpreadSection):
+    """The distribution of each coordinate of each exit point."""
+
+    example: ClassVar = "20 mm"
+    standard_deviation: Annotated[float, bounded("scatter of points")] | None = config_field(
+        "Scatter of the {title}"
+    )
+    """Standard deviation, of a normal distribution. {meaning}"""
+    uniform: WidthOfPoint | None = config_field("Range of the {title}")
+    """Half width of a uniform distribution, or its two ends. {meaning}"""
+
+
+class UncertaintySection(Section):
+    """How surely the inputs are known; what is left out is taken for certain.
+
+    But a modulus that is left out is drawn from what the rope's grade states of it.
+    """
+
+    payload: SpreadSection | None = None
+    """Of weight, inertia and constant loads of the platform."""
+    modulus: SpreadSection | None = None
+    """Of the rope's modulus; left out, what its grade states."""
+    linear_mass: SpreadSection | None = config_field("Rope's mass")
+    """Of the rope's mass per length, on all cables alike."""
+    breaking_load: SpreadSection | None = None
+    """Of the rope's breaking load, on all cables alike."""
+    exit_points: PointSpreadSection | None = None
+    """Of each coordinate of each exit point, for itself."""
+    samples: Annotated[int, WholeNumber(100, 1_000_000)] = config_field("Draws", 4096)
+    """How often the inputs are drawn."""
+    seed: Annotated[int, WholeNumber(0, 2**32 - 1)] = config_field("Seed of the draws", 0)
+    """Of the random numbers; other seeds, other draws."""
+
+    def value(self) -> Uncertainty:
+        """Return how surely the inputs are known."""
+        payload, modulus, linear_mass, breaking_load, exit_points = (
+            None if section is None else section.value()
+            for section in (getattr(self, name) for name in INPUTS)
+        )
+        return Uncertainty(
+            payload, modulus, linear_mass, breaking_load, exit_points, self.samples, self.seed
+        )
+
 
 _INCHES_OR_FEET = re.compile(r"\d\s*(in|inch|inches|ft|foot|feet)\b")
 _GRADES = "'all' or a list of grade ids"
@@ -79,13 +310,13 @@ Groups = Annotated[
 ORIENTATION_KINDS = ("orientation", "orientations", "orientation_range", "orientation_free")
 _PLACES = ("region", "poses", "path")
 TurnList = Annotated[
-    tuple[regions.OrientationSection, ...],
+    tuple[OrientationSection, ...],
     fields.list_of(1, 100, "1 to 100 orientations such as [0, 0, 10 deg]"),
 ]
 GradeIds = Annotated[
     Annotated[Literal["all"], fields.only_word("all", _GRADES), Tag("a word")]
     | Annotated[tuple[fields.Text, ...], fields.list_of(1, 1000, _GRADES), Tag("a list")],
-    Discriminator(regions.word_or_list),
+    Discriminator(word_or_list),
 ]
 _SomeMaterials = Annotated[
     tuple[MaterialName, ...],
@@ -95,7 +326,7 @@ _SomeMaterials = Annotated[
 Materials = Annotated[
     Annotated[Literal["all"], fields.only_word("all", _MATERIALS), Tag("a word")]
     | Annotated[_SomeMaterials, Tag("a list")],
-    Discriminator(regions.word_or_list),
+    Discriminator(word_or_list),
 ]
 
 
@@ -104,9 +335,9 @@ class PoseSection(Section):
 
     position: fields.Point = config_field(expected="three lengths [x, y, z]")
     """Origin of the platform's frame in the world frame."""
-    rotation_vector: fields.Rotation = regions.ROTATION_VECTOR
-    quaternion: regions.Quaternion | None = regions.QUATERNION
-    euler: regions.EulerSection | None = regions.EULER
+    rotation_vector: fields.Rotation = ROTATION_VECTOR
+    quaternion: Quaternion | None = QUATERNION
+    euler: EulerSection | None = EULER
 
     @model_validator(mode="before")
     @classmethod
@@ -115,12 +346,12 @@ class PoseSection(Section):
             raise fields.refusal(
                 f"{describe(given)} is not a list", "[x, y, z]" + fields.in_brackets(given)
             )
-        return {"position": given} if isinstance(given, list) else regions.only_one_of(given)
+        return {"position": given} if isinstance(given, list) else only_one_of(given)
 
     @property
     def turn_rad(self) -> FloatArray:
         """Rotation vector (3,) [rad]."""
-        return regions.rotation_vector_rad(self.rotation_vector, self.quaternion, self.euler)
+        return rotation_vector_rad(self.rotation_vector, self.quaternion, self.euler)
 
     def poses(self) -> Poses:
         """Return it as poses, of which it is one."""
@@ -150,7 +381,7 @@ class PathSection(Section):
 class WorkspaceSection(Section):
     """Which poses the cable must serve."""
 
-    region: regions.AnyRegion | None = None
+    region: AnyRegion | None = None
     """Where the platform works: one of prism, box, points and rectangle."""
     poses: fields.Text | None = config_field("Poses to serve")
     """Instead of a region a table of poses, relative to this file: x_m, y_m, z_m, for a platform
@@ -176,15 +407,15 @@ class WorkspaceSection(Section):
     proof: fields.ProofTime | None = config_field("Longest time for the proof", None)
     """How long at most to try to prove that the chosen rope holds in all poses; 0 for not at all.
     Left out, a number of steps ends it, so that the answer is the same on every machine."""
-    orientation: regions.FollowingSection | None = None
+    orientation: FollowingSection | None = None
     """How the platform is turned at every position: fixed, toward a point, or as a table has
     it."""
     orientations: TurnList | None = None
     """Several orientations, all of them asked for at every position."""
-    orientation_range: regions.OrientationRangeSection | None = None
+    orientation_range: OrientationRangeSection | None = None
     """All rotation vectors between two ends a component, zero where left out, asked for at
     every position."""
-    orientation_free: regions.OrientationRangeSection | None = None
+    orientation_free: OrientationRangeSection | None = None
     """As orientation_range, but the platform may choose: a position is served if some
     orientation serves. The one that needs the thinnest cable is taken."""
 
@@ -193,8 +424,8 @@ class WorkspaceSection(Section):
     def _is_of_one_kind(cls, value: object) -> object:
         if isinstance(value, dict) and not any(value.get(name) for name in _PLACES):
             raise fields.refusal("there is nothing to serve", "region, poses or path")
-        value = regions.only_one_of(value, _PLACES, "the workspace")
-        return regions.only_one_of(value, ORIENTATION_KINDS, "the workspace")
+        value = only_one_of(value, _PLACES, "the workspace")
+        return only_one_of(value, ORIENTATION_KINDS, "the workspace")
 
     def workspace(self, region: Region, orientations: Orientations) -> Workspace:
         """Return the workspace over a region, in these orientations."""
@@ -325,7 +556,7 @@ class SelectionSection(Section):
         factor = RUNNING_ROPE.get(str(given.get("duty_class"))) if isinstance(given, dict) else None
         if factor is None or not isinstance(given, dict):
             return given
-        regions.only_one_of(given, ("safety_factor", "duty_class"), "the selection")
+        only_one_of(given, ("safety_factor", "duty_class"), "the selection")
         return {**given, "safety_factor": factor}
 
     def selection(self, price_list: PriceList | None, entries: Sequence[Entry]) -> Selection:

@@ -13,9 +13,8 @@ from designer.analysis.findings import Findings, Unserved
 from designer.effects.effect import Effect
 from designer.effects.registry import SHIPPED
 from designer.grades.grade import TRUST_MEANING, Grade, Size
-from designer.model.requirement import Requirement, State
 from designer.model.robot import SAG_AT_MOST
-from designer.model.verdict import Verdict
+from designer.model.verdict import Requirement, State, Verdict
 from designer.report import format as fmt
 from designer.report.phrases import orientation_words
 from designer.selection.candidate import Candidate

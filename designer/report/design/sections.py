@@ -23,8 +23,8 @@ from designer.analysis.reactions import Reaction
 from designer.analysis.sensitivities import Sensitivities
 from designer.grades.grade import NOT_NAMED, TRUST_MEANING
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
-from designer.model.drum import DEAD_TURNS
 from designer.model.verdict import Verdict
+from designer.model.winches import DEAD_TURNS
 from designer.proof.prove import Proof
 from designer.report import format as fmt
 from designer.report.design.first_page import by_title, outside_pose
@@ -32,10 +32,10 @@ from designer.report.document import MOST_ROWS
 from designer.report.figures.charts_selection import rank
 from designer.report.templates import Statement, plain_statement
 from designer.selection.candidate import Candidate
+from designer.selection.cases import FEW_SAMPLES
 from designer.selection.efficiency import Allowance
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import GradeOutcome, SelectionResult
-from designer.selection.samples import FEW_SAMPLES
 from designer.sizing.loop import Iterate, LoopSizing
 from designer.statics.cable_loss import Fate
 from designer.study import Entry, Study, rope_effects

@@ -13,7 +13,7 @@ from designer.diagnosis.calibration import Calibrated
 from designer.diagnosis.result import Diagnosis, Estimate, Finding
 from designer.diagnosis.search import EffectTrial
 from designer.effects.effect import OF_SESSION, Effect, Parameter
-from designer.model.measured_data import KINDS, Noise
+from designer.model.measurements import KINDS, Noise
 from designer.report import format as fmt
 from designer.spelling import in_runs
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from designer.grades.grade import ComputedFigure, Grade, Limits, Reference, Size
-from designer.grades.parts import RelativeStiffness
+from designer.grades.grade import ComputedFigure, Grade, Limits, Reference, RelativeStiffness, Size
 from fibre_rope.creep import CreepLaw
 from fibre_rope.parameters import Condition, Parameters
 

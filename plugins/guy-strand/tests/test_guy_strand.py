@@ -5,8 +5,8 @@ from __future__ import annotations
 import guy_strand
 import pytest
 
-from designer.grades.files import read_grades
 from designer.grades.grade import Grade
+from designer.grades.registry import read_grades
 
 
 @pytest.fixture(scope="module")

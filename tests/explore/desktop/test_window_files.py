@@ -32,7 +32,7 @@ def test_the_start_page_shows_shipped_and_recent_studies(empty: Driver, tmp_path
 _START = """
 import sys, time
 from designer.explore.desktop.app import application
-from designer.explore.desktop.settings import Settings
+from designer.explore.desktop.files import Settings
 from designer.explore.desktop.window import Window
 from pathlib import Path
 app = application()
@@ -323,15 +323,15 @@ def test_layout_theme_and_recent_files_are_remembered(
     empty: Driver, tmp_path: Path, qtbot: Any
 ) -> None:
     empty.open(small_yard(tmp_path))
-    empty.window.menus.actions["panel Here"].trigger()
+    empty.window.menus.actions["panel This pose"].trigger()
     empty.window.menus.themes["dark"].trigger()
-    assert not empty.window.docks["Here"].isVisible()
+    assert not empty.window.docks["This pose"].isVisible()
     dark = empty.picture(empty.scene)[5, 5].sum()
     empty.window.close()
     again = Driver(qtbot, tmp_path, theme="")
     again.open(tmp_path / "yard.yaml")
     assert again.settings.theme == "dark"
-    assert not again.window.docks["Here"].isVisible()
+    assert not again.window.docks["This pose"].isVisible()
     assert again.picture(again.scene)[5, 5].sum() == dark < 200
     assert again.settings.recent == (tmp_path / "yard.yaml",)
     again.window.menus.themes["light"].trigger()
@@ -343,4 +343,4 @@ def test_another_theme_takes_no_more_room(yard: Driver) -> None:
         yard.window.menus.themes[theme].trigger()
         yard.rest()
         assert yard.window.width() == 1280
-        assert yard.window.docks["Here"].geometry().right() < yard.window.width()
+        assert yard.window.docks["This pose"].geometry().right() < yard.window.width()

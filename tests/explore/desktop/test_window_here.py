@@ -46,7 +46,7 @@ def test_every_head_says_what_it_is(yard: Driver) -> None:
 def test_modes_move_in_a_window_of_their_own(yard: Driver) -> None:
     """Frequencies are those of the rope at this pose; what nothing holds has none."""
     yard.press("modes")
-    shown, live = yard.window.here.modes, yard.window.live
+    shown, live = yard.window.pose.modes, yard.window.live
     yard.bot.waitUntil(shown.isVisible)
     assert live.question is not None
     statics = solve_sagging(live.question.robot, live.question.pose, live.question.cable)

@@ -130,7 +130,7 @@ def _lateness(driver: Driver) -> tuple[float, float, float]:
     counter.join()
     live = driver.window.live
     solving = Heartbeat()
-    live._ask_whole()
+    live._ask_all()
     solving.start()
     while live.busy:
         QTest.qWait(5)

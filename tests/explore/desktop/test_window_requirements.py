@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QLabel, QTableView
 from window_driver import Driver
 
 from designer.analysis.analyse import Analysis
-from designer.model.requirement import Answer, Requirement
+from designer.model.verdict import Answer, Requirement
 
 
 def table(driver: Driver) -> QTableView:

@@ -257,9 +257,9 @@ def test_dragging_an_exit_point_edits_the_study(yard: Driver) -> None:
 
 def test_an_exit_point_takes_the_coordinate_of_another(yard: Driver) -> None:
     points = yard.session.study.robot.exit_points_m
-    start, beside = yard.pixel(points[2]), points[2].copy()
-    beside[0] = points[1][0] + 2.0 / yard.scene.view.pixels_per_m
-    step = yard.pixel(beside) - start
+    start, row_of = yard.pixel(points[2]), points[2].copy()
+    row_of[0] = points[1][0] + 2.0 / yard.scene.view.pixels_per_m
+    step = yard.pixel(row_of) - start
     drag_exit_point(yard, 2, step / 2, step, keys=Qt.KeyboardModifier.NoModifier)
     yard.rest()
     assert yard.session.study.robot.exit_points_m[2, 0] == points[1, 0]
@@ -351,7 +351,7 @@ def test_a_path_is_played(yard: Driver) -> None:
 
 def test_a_mode_moves_in_the_scene(yard: Driver) -> None:
     yard.press("modes")
-    modes, stage = yard.window.here.modes, yard.scene.stage
+    modes, stage = yard.window.pose.modes, yard.scene.stage
     modes.in_scene.click()
     ends = []
 

@@ -25,7 +25,7 @@ from PySide6.QtTest import QTest  # noqa: E402
 from PySide6.QtWidgets import QApplication, QLineEdit, QSlider, QWidget  # noqa: E402
 
 from designer.arrays import FloatArray  # noqa: E402
-from designer.explore.desktop.settings import Settings  # noqa: E402
+from designer.explore.desktop.files import Settings  # noqa: E402
 from designer.explore.desktop.window import Window  # noqa: E402
 from designer.explore.session import Session  # noqa: E402
 from designer.resources import example_file  # noqa: E402
@@ -58,7 +58,7 @@ class Driver:
 
     def reset(self) -> None:
         """Show what is shown at first."""
-        self.window.furnish()
+        self.window.create_panels()
         work = self.window.work
         self.window.live.session = None
         for box in (work.surface, work.slice):

@@ -11,13 +11,20 @@ from typing import Any
 
 from designer.documents.document import GRADE, document_of
 from designer.documents.edits import scalar
+from designer.drafting.maker_table import MakerRow, MakerTable
 from designer.errors import Fault, InputError
-from designer.grades.files import grade_of
-from designer.grades.grade import Grade, Reference, Size
+from designer.grades.checks import flaws_over_diameter
+from designer.grades.grade import (
+    DIMENSIONS,
+    Grade,
+    Modulus,
+    Reference,
+    RelativeStiffness,
+    Size,
+    Units,
+)
 from designer.grades.listing import ton_remarks
-from designer.grades.parts import DIMENSIONS, Modulus, RelativeStiffness, Units
-from designer.grades.proportions import flaws_over_diameter
-from designer.io.maker_table import MakerRow, MakerTable
+from designer.grades.registry import grade_of
 from designer.units import read_quantity
 
 TEXTS = {

@@ -1,24 +1,132 @@
-"""The study as text, with all that is wrong in it: for faults, and for what no panel has."""
+"""Pages beside the scene: the start page, and the study as text with all that is wrong in it."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from PySide6.QtCore import QRect, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QFontDatabase, QPainter, QPaintEvent, QResizeEvent, QTextCursor
+from PySide6.QtGui import (
+    QColor,
+    QFontDatabase,
+    QIcon,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+    QShowEvent,
+    QTextCursor,
+)
 from PySide6.QtWidgets import (
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
     QListWidget,
     QListWidgetItem,
     QPlainTextEdit,
+    QPushButton,
+    QScrollArea,
+    QSizePolicy,
     QSplitter,
     QVBoxLayout,
     QWidget,
 )
 
+from designer.explore.desktop.files import Settings
 from designer.explore.desktop.live_session import LiveSession
-from designer.explore.desktop.widgets import beside, button, label, named
+from designer.explore.desktop.widgets import button, clear_layout, fill, label, named, row_of
 from designer.report import format as fmt
+from designer.resources import example_file, example_names, example_summary
 
-_PAUSE_MS = 400
-"""Nothing was typed for so long: the text is read."""
+_PICTURE_PX = (200, 125)
+_COLUMNS = 4  #: With these pictures and the recent studies as wide as the window at first
+
+
+class StartPage(QScrollArea):
+    """Where a study is chosen."""
+
+    chosen = Signal(Path)  #: A study's file was chosen
+    asks_for_file = Signal()  #: The user wants to look for a file
+    asks_for_new = Signal()
+    asks_to_import = Signal()
+
+    def __init__(self, settings: Settings) -> None:
+        super().__init__()
+        self._settings = settings
+        self.setObjectName("start page")
+        self.setWidgetResizable(True)
+        inside = QWidget()
+        columns = QHBoxLayout(inside)
+        columns.setContentsMargins(28, 24, 28, 24)
+        columns.setSpacing(28)
+        self._recent = QVBoxLayout()
+        left = QVBoxLayout()
+        left.setSpacing(8)
+        question = label("Which cable, how thick, and how sure is that?", "muted")
+        fill(left, label("cdpr-designer", "title"), question)
+        left.addSpacing(12)
+        for name, text, ask, tip in (
+            ("new study", "New study", self.asks_for_new, "A study with a comment to every field"),
+            ("open", "Open a study …", self.asks_for_file, "A study of yours"),
+            ("import", "Import a robot …", self.asks_to_import, "A robot of CASPR or WireX"),
+        ):
+            left.addWidget(button(name, text, ask.emit, tip))
+        left.addSpacing(12)
+        fill(left, label("Recent", "heading"), self._recent, None)
+        shipped, grid = QVBoxLayout(), QGridLayout()
+        grid.setSpacing(12)
+        for number, name in enumerate(example_names()):
+            file = example_file(name)
+            picture = file.parent / "pictures" / f"{name}.png"
+            entry = named(_StudyButton(name, example_summary(name), picture), f"example {name}")
+            entry.clicked.connect(lambda _=False, file=file: self.chosen.emit(file))
+            grid.addWidget(entry, number // _COLUMNS, number % _COLUMNS)
+        fill(shipped, label("Studies to start from", "heading"), grid, None)
+        columns.addLayout(left, 1)
+        columns.addLayout(shipped, 4)
+        self.setWidget(inside)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        self.show_recent()
+        super().showEvent(event)
+
+    def show_recent(self) -> None:
+        clear_layout(self._recent)
+        studies = self._settings.recent
+        for path in studies:
+            entry = _StudyButton(path.stem, str(path.parent))
+            entry = named(entry, f"recent {path.stem}", str(path))
+            entry.clicked.connect(lambda _=False, path=path: self.chosen.emit(path))
+            self._recent.addWidget(entry)
+        if not studies:
+            self._recent.addWidget(label("Studies that you open stand here.", "muted"))
+
+
+class _StudyButton(QPushButton):
+    """A study to choose: its picture, if any, its name, and what it is."""
+
+    def __init__(self, name: str, summary: str, picture: Path | None = None) -> None:
+        super().__init__()
+        self.setProperty("role", "study")
+        self.setAccessibleName(name)
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Expanding)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(10, 10, 10, 10)
+        if picture is not None:
+            image = QLabel()
+            image.setFixedHeight(_PICTURE_PX[1])
+            image.setAlignment(Qt.AlignmentFlag.AlignCenter)
+            pixels = QIcon(str(picture)).pixmap(QSize(*_PICTURE_PX), image.devicePixelRatioF())
+            image.setPixmap(pixels)
+            rows.addWidget(image)
+        rows.addWidget(label(name, "heading"))
+        text = label(summary, "muted")
+        text.setWordWrap(True)
+        text.setAlignment(Qt.AlignmentFlag.AlignTop)
+        rows.addWidget(text, 1)
+        self.setMinimumHeight(rows.sizeHint().height() + (24 if picture else 0))
+
+
+_PAUSE_MS = 400  #: Nothing was typed for so long: the text is read
 
 
 class TextPage(QWidget):
@@ -47,7 +155,7 @@ class TextPage(QWidget):
         split.setStretchFactor(0, 4)
         split.setStretchFactor(1, 1)
         rows = QVBoxLayout(self)
-        rows.addLayout(beside(self._heading, None, reload, self.leave))
+        rows.addLayout(row_of(self._heading, None, reload, self.leave))
         rows.addWidget(split, 1)
         live.changed.connect(self._show_text)
         live.flushing.connect(self._flush)

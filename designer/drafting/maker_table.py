@@ -10,10 +10,9 @@ from itertools import islice
 from pathlib import Path
 
 from designer.documents.opened import open_input, reason
+from designer.drafting.pdf_table import pdf_rows
 from designer.errors import Fault, InputError, visible
-from designer.grades.grade import MOST_SIZES
-from designer.grades.parts import DIMENSIONS
-from designer.io.pdf_table import pdf_rows
+from designer.grades.grade import DIMENSIONS, MOST_SIZES
 from designer.measured.table import cells_of
 from designer.units import QuantityError, describe, read_quantity
 
