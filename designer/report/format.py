@@ -209,13 +209,19 @@ def plural(amount: int, noun: str) -> str:
 
 
 def printed(text: str) -> str:
-    """Return a plain text as it is printed: ``d²`` for ``d^2``, and true minus signs."""
+    """Return a plain text as it is printed: ``d²`` for ``d^2``, true minus signs and powers."""
+    text = re.sub(r"(?<!\w)(\d+(?:\.\d+)?)e([-+]?\d{1,3})\b", _power, text)
     raised = re.sub(
         r"\^(\d)|(?<=\bmm)(2)\b",
         lambda found: (found[1] or found[2]).translate(_SUPERSCRIPTS),
         text,
     )
     return re.sub(r"(?<=[( ])-(?=\d)", "−", raised)
+
+
+def _power(found: re.Match[str]) -> str:
+    power = str(int(found[2])).translate(_SUPERSCRIPTS)
+    return f"{found[1]}{_THIN}×{_THIN}10{power}"
 
 
 def shorter(text: str) -> str:

@@ -10,6 +10,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable
 from datetime import datetime
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,6 +28,7 @@ from designer.model.verdict import Requirement, State
 from designer.report import format as fmt
 from designer.report.figures.colours import DIAMETER, RATIO
 from designer.selection.assignment import Assignment
+from designer.selection.usable import UsableSize
 from designer.study import Study
 
 if TYPE_CHECKING:
@@ -214,6 +216,15 @@ def length_of_statements(html: str) -> int:
     """Return how many characters the statements have, without their titles."""
     texts = (re.sub(r"<strong>.*?</strong>", "", part) for part in each_statement(html))
     return sum(len(Markup(text).striptags()) for text in texts)
+
+
+def runs_that_serve_none(sizes: Iterable[UsableSize]) -> list[list[UsableSize]]:
+    """Return sizes one by one, but three and more in a row that serve nothing together."""
+    runs: list[list[UsableSize]] = []
+    for serves_some, run in groupby(sizes, key=lambda size: size.fraction > 0.0):
+        same = list(run)
+        runs += [same] if not serves_some and len(same) > 2 else [[size] for size in same]
+    return runs
 
 
 def two_columns(statements: Iterable[str]) -> tuple[list[str], list[str]]:
