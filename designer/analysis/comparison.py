@@ -9,6 +9,7 @@ from typing import Any
 
 from designer import checked
 from designer.documents.plain import Json
+from designer.spelling import digits
 
 _RTOL = 1e-9
 """Relative difference below which numbers are the same: what a search at a flat optimum leaves."""
@@ -172,7 +173,7 @@ def _with_currency(
     currencies = [side.get("selection.currency") for _, side in sides]
     if len({*currencies}) == 2:
         a, b = (
-            f"{side[_COST]:.4g} {currency or 'without a currency'}"
+            f"{digits(side[_COST])} {currency or 'without a currency'}"
             for (_, side), currency in zip(sides, currencies, strict=True)
         )
         return replace(line, label=line.label + estimate, a=a, b=b)
@@ -206,7 +207,9 @@ def _check_words(check: Mapping[str, Any] | None) -> str | None:
     if check is None:
         return None
     figures = ((name, check.get(name)) for name in ("demand", "capacity"))
-    said = [f"{n} {x:.4g} {check.get('unit', '')}".rstrip() for n, x in figures if x is not None]
+    said = [
+        f"{n} {digits(x)} {check.get('unit', '')}".rstrip() for n, x in figures if x is not None
+    ]
     return f"{check['state']}: {', '.join(said)}" if said else str(check["state"])
 
 

@@ -24,7 +24,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from designer import checked
+from designer import checked, spelling
 from designer.arrays import FloatArray
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.region import Region
@@ -231,7 +231,7 @@ class Loaded:
 
 
 def _row(vector: FloatArray) -> str:
-    return f"({', '.join(f'{round(float(x), 3) + 0.0:g}' for x in vector)})"
+    return spelling.vector(np.round(vector, 3), 6)
 
 
 @checked.reports_field

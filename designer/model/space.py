@@ -21,6 +21,7 @@ from designer import checked
 from designer.arrays import BoolArray, FloatArray, IntArray, finite_array, frozen_array
 from designer.model.region import Region
 from designer.model.sobol import halton
+from designer.spelling import vector
 
 _STRAIGHT = 1e-9
 """Sine of the angle to a point straight behind, from which on that counts as straight."""
@@ -88,9 +89,7 @@ class Toward(OrientationLaw):
 
     @property
     def words(self) -> str:
-        point, axis = (
-            f"({', '.join(f'{x:g}' for x in vector)})" for vector in (self.point_m, self.axis)
-        )
+        point, axis = vector(self.point_m, 6), vector(self.axis)
         return f"the platform's axis {axis} toward {point} m"
 
 

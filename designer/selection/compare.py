@@ -22,7 +22,7 @@ from designer.selection.criteria import Criterion
 from designer.selection.reeving import drum_of, sheave_ratio_of, spooling_of
 from designer.selection.requirements import Evaluation, evaluate, loads_of, strength_of
 from designer.selection.verify import Verification
-from designer.spelling import position
+from designer.spelling import digits, position
 from designer.study import Objective, Selection
 
 Search = Callable[[Sequence[Candidate]], Sequence[Verification]]
@@ -173,7 +173,7 @@ def _standing(
         )
     if not met.holds:
         least = "" if candidate.sampled.is_complete else "at least "
-        percent = f"{least}{100.0 * met.utilisation:.4g} %"
+        percent = f"{least}{digits(100.0 * met.utilisation)} %"
         return "too_thin", f"meets {percent} of its allowable tension at {worst}"
     failed = rejection_words(candidate)
     if failed is not None and candidate is not best:

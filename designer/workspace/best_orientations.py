@@ -23,6 +23,7 @@ from designer.model.robot import Poses, Robot
 from designer.model.space import OrientationLaw, OrientationTable
 from designer.model.workspace import HangsBelow
 from designer.sizing.newton import size_poses
+from designer.spelling import vector
 from designer.workspace.demand import demand_of
 
 _NODES = 256
@@ -146,9 +147,7 @@ class BestOrientations(OrientationLaw):
 
     @property
     def words(self) -> str:
-        low, high = (
-            f"({', '.join(f'{angle:.3g}' for angle in np.degrees(end))})" for end in self.range_rad
-        )
+        low, high = (vector(np.degrees(end), 3) for end in self.range_rad)
         costs = (
             f"at {_CHECKED} others the thickest cable along this law is {self.excess:.1%} thicker "
             "than in the best orientation of each"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product, zip_longest
 from typing import TYPE_CHECKING, Any, SupportsFloat
 
@@ -91,7 +91,7 @@ def requirements(analysis: Analysis) -> Context:
     shown = {"requirements": by_title(analysis.requirements), "pose": pose}
     if pose is None:
         return shown
-    write = _alike(cable.exit_tension_N for cable in pose.cables)
+    write = fmt.alike((cable.exit_tension_N for cable in pose.cables), 5)
     return {
         **shown,
         "governing_cable": pose.cables[int(pose.equilibrium.cable_tension_N.argmax())].cable,
@@ -103,19 +103,9 @@ def requirements(analysis: Analysis) -> Context:
 def _forces(pose: GoverningPose) -> list[tuple[str, list[str]]]:
     """Return each force on the platform with its components, and their sum."""
     named = [(f"cable {one.cable}", one.pull_N) for one in pose.cables]
-    write = _alike(float(x) for _, force in (*named, *pose.loads) for x in force)
+    write = fmt.alike((float(x) for _, force in (*named, *pose.loads) for x in force), 5)
     rows = [(fmt.capital(name), [*write(*force)]) for name, force in (*named, *pose.loads)]
     return [*rows, ("Sum", [*write(*(pose.force_sum_N.round(6) + 0.0))])]
-
-
-def _alike(forces_N: Iterable[float]) -> Callable[..., tuple[str, ...]]:
-    """Return what writes forces in one unit, the largest of these with five digits."""
-    largest_N = max((abs(float(x)) for x in forces_N), default=0.0)
-    unit, scale = fmt.force_unit(largest_N)
-    places = max(4 - math.floor(math.log10(max(largest_N / scale, 1.0))), 0)
-    return lambda *values: tuple(
-        f"{fmt.fixed(float(x) / scale, places)}\u00a0{unit}" for x in values
-    )
 
 
 def sensitivities(analysis: Analysis) -> Mapping[str, object] | None:

@@ -65,7 +65,7 @@ class MapQuantity:
 DIAMETER = MapQuantity("diameter", "needed diameter", "mm", 1e3)
 TENSION = MapQuantity("tension", "largest tension", "kN", 1e-3)
 UTILISATION = MapQuantity("utilisation", "utilisation", "%", 100.0)
-RATIO = MapQuantity("ratio", "tension with sag over tension without", "", 1.0)
+RATIO = MapQuantity("ratio", "tension, with over without sag", "", 1.0)
 
 
 def tension_of(field: RegionField) -> MapQuantity:
