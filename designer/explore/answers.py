@@ -600,9 +600,9 @@ def _quick_row(candidate: Candidate, is_best: bool, is_in_front: bool) -> RopeRo
     elif (rejection := rejection_words(candidate)) is not None:
         standing, reason = "rejected", rejection
     elif is_in_front:
-        standing, reason = "undominated", "holds at the samples, and no other beats it there"
+        standing, reason = "undominated", "holds at the samples; no other rope dominates it there"
     else:
-        standing, reason = "dominated", "holds at the samples, and another one beats it there"
+        standing, reason = "dominated", "holds at the samples; another rope dominates it there"
     return _row(candidate, standing, reason)
 
 

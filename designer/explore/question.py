@@ -138,8 +138,10 @@ class Question:
         size, the sheave leaves nothing of its strength, or there are more or fewer ropes than
         cables.
         """
-        if self.rope is None or isinstance(self.rope, Rope):
-            return None if self.rope is None else self._with_converged_stiffness(self.rope)
+        if self.rope is None:
+            return None
+        if isinstance(self.rope, Rope):
+            return self._with_converged_stiffness(self.rope)
         cables = {rope: self._with_converged_stiffness(rope) for rope in self.rope.ropes}
         if len(self.rope.ropes) != self.robot.n_cables:
             raise DesignerError("the ropes of the groups are of a robot with other cables")

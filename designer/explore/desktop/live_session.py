@@ -51,27 +51,25 @@ class Ages(QObject):
     def renew(self, aspect: str, question: Question, present: Question | None) -> None:
         """Take in that the answer to a question is shown."""
         self._states[aspect] = _state_of(aspect, question)
-        self._freshen(aspect)
+        self._old_since_s.pop(aspect, None)
+        self.outdated -= {aspect}
         if present is not None:
-            self._compare(aspect, present, time.monotonic())
+            self._compare([aspect], present)
 
     def follow(self, present: Question) -> None:
         """Compare all that is shown with the present state."""
+        self._compare(self._states, present)
+
+    def _compare(self, aspects: Iterable[str], present: Question) -> None:
         now_s = time.monotonic()  # one change makes all of them old at once
-        for aspect in self._states:
-            self._compare(aspect, present, now_s)
-
-    def _compare(self, aspect: str, present: Question, now_s: float) -> None:
-        if self._states[aspect] == _state_of(aspect, present):
-            self._freshen(aspect)
-        elif aspect not in self._old_since_s:
-            self._old_since_s[aspect] = now_s
-            if not self._timer.isActive():  # else a slider that goes on moving would put it off
-                self._timer.start(_OLD_MS)
-
-    def _freshen(self, aspect: str) -> None:
-        self._old_since_s.pop(aspect, None)
-        self.outdated -= {aspect}
+        for aspect in aspects:
+            if self._states[aspect] == _state_of(aspect, present):
+                self._old_since_s.pop(aspect, None)
+                self.outdated -= {aspect}
+            elif aspect not in self._old_since_s:
+                self._old_since_s[aspect] = now_s
+                if not self._timer.isActive():  # else a slider that goes on moving would put it off
+                    self._timer.start(_OLD_MS)
 
     def _tell(self) -> None:
         """Say what is old by now, and wait for the rest: a timer may come a little early."""

@@ -108,8 +108,8 @@ class ModeWindow(QDialog):
         self.words.setText(
             "No cables hold the platform here, or its inertia is not in the study."
             if modes is None
-            else "Displacements are drawn far larger than they are, and all modes equally fast; "
-            "winches are braked, and nothing damps."
+            else "Displacements are exaggerated, and all modes shown at one speed; winches braked, "
+            "no damping."
         )
         self._choose()
 
@@ -191,7 +191,7 @@ def _columns(unit: str, per_N: float) -> tuple[Column, ...]:
              "its ends.", millimetres, None),
             ("stretch", "mm", "stretch_m", "How much longer the cable is under its load than "
              "unstrained.", millimetres, None),
-            ("used", "%", "utilisation", "Utilisation: largest tension anywhere in the cable over "
+            ("util.", "%", "utilisation", "Utilisation: largest tension anywhere in the cable over "
              "the allowable tension.", lambda value: fmt.fixed(100.0 * value, 1),
              lambda cable: cable.utilisation),
         )

@@ -9,7 +9,7 @@ colours of the window, and without a new frame of the scene.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -86,12 +86,15 @@ class Overlay(QWidget):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(QColor(current_theme().muted))
+        names: list[QRectF] = []
         for name, position_m in self.names:
             x, y = self._view().pixels(position_m)
             width = painter.fontMetrics().horizontalAdvance(name)
             has_room = x + 6 + width < self.width() - self.legend_px
-            painter.drawText(QPointF(x + 6 if has_room else x - 6 - width, y - 6), name)
-        self._draw_worst(painter)
+            corner = QPointF(x + 6 if has_room else x - 6 - width, y - 6)
+            painter.drawText(corner, name)
+            names.append(QRectF(corner.x(), corner.y() - 14, width, 18))
+        self._draw_worst(painter, names)
         for place_m in (self.platform_m, self.chosen_m):
             self._draw_handle(painter, place_m)
         self._draw_rule(painter)
@@ -101,7 +104,7 @@ class Overlay(QWidget):
         if self.note:
             self._write_boxed(painter, QPointF(10, 10), self.note)
 
-    def _draw_worst(self, painter: QPainter) -> None:
+    def _draw_worst(self, painter: QPainter, names: Sequence[QRectF]) -> None:
         if self.worst is None:
             return
         place, text = self.worst
@@ -113,7 +116,11 @@ class Overlay(QWidget):
             painter.drawLine(QPointF(x - 13, y), QPointF(x - 4, y))
             painter.drawLine(QPointF(x + 4, y), QPointF(x + 13, y))
         painter.setPen(QColor(marked))
-        self._write(painter, QPointF(x + 16, y - 8), text)
+        box = QRectF(painter.boundingRect(QRectF(0, 0, 400, 200), 0, text))
+        covers = any(
+            box.translated(x + 16, y - 8 - box.height()).intersects(name) for name in names
+        )
+        self._write(painter, QPointF(x + 16, y + (8 + box.height() if covers else -8)), text)
 
     def _draw_rule(self, painter: QPainter) -> None:
         ends = [QPointF(*self._view().pixels(end)) for end in self.rule_m]

@@ -191,7 +191,7 @@ class Painting:
             hatch = current_theme().hatch
             keys.append(Key(hatch[0], "no rope serves", hatch[1]))
         if values.is_left_out.any():
-            keys.append(Key(current_theme().left_out, "left out: a cable hangs below"))
+            keys.append(Key(current_theme().left_out, "excluded: a cable hangs below"))
         return keys
 
 

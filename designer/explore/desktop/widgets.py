@@ -157,7 +157,7 @@ QToolTip {{ color: {theme.ink}; background: {theme.raised}; border: 1px solid {t
     padding: 4px; }}
 QDockWidget::title {{ padding: 4px 8px; background: {theme.window}; }}
 QHeaderView::section {{ background: {theme.window}; color: {theme.muted}; border: none;
-    border-bottom: 1px solid {theme.border}; padding: 3px 4px; }}
+    border-bottom: 1px solid {theme.border}; padding: 3px 2px; }}
 QTableView {{ border: none; gridline-color: {theme.border}; }}
 QScrollArea {{ border: none; }}
 QFrame#legend {{ background: #e1{theme.base[1:]}; border: 1px solid {theme.border};

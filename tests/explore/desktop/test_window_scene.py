@@ -180,7 +180,7 @@ def test_sag_is_exaggerated_for_the_eye_alone(yard: Driver) -> None:
     yard.keys("Down")
     assert deviation() == pytest.approx(5.0 * true, rel=1e-6)
     assert yard.window.live.answers["here"].cables[0].sag_m == sag_m
-    assert "sag drawn 5 times" in yard.scene.overlay.texts()
+    assert "sag exaggerated 5 times" in yard.scene.overlay.texts()
 
 
 def test_what_no_rope_serves_is_hatched(yard: Driver) -> None:
