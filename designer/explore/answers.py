@@ -510,7 +510,6 @@ class RopeRow:
 
     @property
     def rope(self) -> Rope:
-        """Its names, by which it is chosen."""
         return Rope(self.grade.id, self.size.id)
 
     @property
@@ -649,7 +648,6 @@ def _answered(ropes: Ropes, analysis: Analysis) -> Ropes:
 
 
 def ropes_of(selection: SelectionResult, groups: GroupChoice | None = None) -> Ropes:
-    """Return the rows of a selection that was made in full."""
     chosen = selection.chosen
     rows = [_row(c, c.standing, c.reason) for c in selection.candidates]
     rows += [

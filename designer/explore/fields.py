@@ -275,7 +275,6 @@ class _Slot:
 
     @property
     def plain(self) -> str:
-        """Path without places in lists."""
         return ".".join(key for key in self.place if isinstance(key, str))
 
     @property

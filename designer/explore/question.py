@@ -65,7 +65,6 @@ class RopePerCable:
 
 
 def cables_words(rope: Rope | RopePerCable | None) -> str:
-    """Return what figures are of, for the reader."""
     return "Thinnest cable of the family" if rope is None else rope.label
 
 
@@ -108,7 +107,6 @@ class Question:
 
     @cached_property
     def built(self) -> AsBuilt:
-        """Robot and cables as the declared effects have them."""
         require_enough_cables(self.study)
         has_region = self.workspace is not None
         return as_built_by(
@@ -127,7 +125,6 @@ class Question:
 
     @cached_property
     def catalogue(self) -> Catalogue:
-        """All grades that the study may name."""
         return catalogue_of(self.study, self.plugins)
 
     @cached_property

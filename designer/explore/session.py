@@ -133,7 +133,6 @@ def with_entry(reading: Reading, text: str, field: Field, typed: str) -> str:
 
 
 def put_back(present: Reading, saved: Reading, path: str) -> str:
-    """Return the present text with one field as the file has it, or without it."""
     text = present.text
     keys, saved_keys = _keys_in_text(text, path), _keys_in_text(saved.text, path)
     saved_value = edits.value_text(saved.text, saved_keys)
@@ -270,12 +269,10 @@ class Session:
 
     @property
     def text(self) -> str:
-        """The study as it would be saved."""
         return self.state.reading.text
 
     @property
     def saved_text(self) -> str:
-        """The study as it was read or saved last."""
         return self._saved.text
 
     @property
@@ -364,7 +361,6 @@ class Session:
         return ()
 
     def put_back(self, path: str) -> tuple[Fault, ...]:
-        """Make one field as it is in the file; return what stands against it, nothing if done."""
         self.rejected.pop(path, None)
         field = self.state.live.by_path.get(path)
         if field is None:
@@ -500,7 +496,6 @@ class Session:
         self._go_to(max(self._index - 1, 0))
 
     def redo(self) -> None:
-        """Do the step again that was undone last, if there is one."""
         self._go_to(min(self._index + 1, len(self._steps) - 1))
 
     def _go_to(self, step: int) -> None:

@@ -90,7 +90,6 @@ class Helper:
             self._changed.notify()
 
     def close(self) -> None:
-        """Give up everything and end the process."""
         with self._changed:
             self._closing = True
             process, thread = self._process, self._thread
@@ -291,7 +290,6 @@ class Worker:
             self._changed.notify()
 
     def close(self, timeout_s: float = 2.0) -> None:
-        """Give up everything, end the processes, and wait a little for the thread to end."""
         with self._changed:
             self._closing = True
             for kind in list(self._waiting):

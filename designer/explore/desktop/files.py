@@ -38,7 +38,6 @@ class Settings:
 
     @property
     def theme(self) -> str:
-        """One of `widgets.THEME_CHOICES`."""
         return str(self._store.value("theme", "system"))
 
     @theme.setter
@@ -62,7 +61,6 @@ class Settings:
         return tuple(path for path in map(Path, names) if path.is_file())
 
     def remember(self, study: Path) -> None:
-        """Put a study in front of the recent ones."""
         path = study.resolve()
         earlier = [study_file for study_file in self.recent if study_file != path]
         names = [str(study_file) for study_file in [path, *earlier][:MAX_RECENT]]
@@ -290,7 +288,6 @@ class Files(QObject):
     # Plans
 
     def optimise(self) -> None:
-        """Ask for a plan, and search for a better design of the study."""
         plan = self._choose_file("Plan of an optimisation", _PLANS)
         if plan is not None:
             self._live.begin_long("optimise", plan=plan)
@@ -345,14 +342,12 @@ class Files(QObject):
             self.export("lengths", poses=poses)
 
     def export(self, content: ExportContent, **options: Path) -> None:
-        """Ask where a report, tables or a file are to be, and write them."""
         target = self._choose_target(content)
         if target is not None:
             ropes = self._live.answers.get("ropes") if content == "tables" else None
             self._live.begin_long("export", content=content, target=target, ropes=ropes, **options)
 
     def save_picture(self, scene: QWidget) -> None:
-        """Ask where a picture of the scene is to be, and save it."""
         target = self._choose_target("picture")
         if target is not None:
             is_saved = scene.grab().save(str(target))

@@ -45,7 +45,6 @@ class Ages(QObject):
 
     @property
     def is_waiting(self) -> bool:
-        """Whether something may become old by itself."""
         return self._timer.isActive()
 
     def renew(self, aspect: str, question: Question, present: Question | None) -> None:
@@ -190,7 +189,6 @@ class LiveSession(QObject):
 
     @property
     def busy(self) -> frozenset[Kind]:
-        """Kinds of questions that have no answer yet."""
         return frozenset(self._pending)
 
     @property
@@ -267,7 +265,6 @@ class LiveSession(QObject):
             self.do(lambda session: session.set_text(session.saved_text))
 
     def write(self, text: str) -> None:
-        """Take the study as it was written."""
         if self.session is not None and text != self.session.text:
             self.do(lambda session: session.set_text(text, continuous=True))
 
@@ -346,7 +343,6 @@ class LiveSession(QObject):
         self.taken_over.emit()
 
     def compare_in_map(self, is_compared: bool) -> None:
-        """Have the map show the difference to the pinned state, or not."""
         self._compares_map = is_compared
         self._see_pinned()
 

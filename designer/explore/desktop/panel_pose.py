@@ -168,7 +168,6 @@ class ModeView(QWidget):
 
 
 def _columns(unit: str, per_N: float) -> tuple[Column, ...]:
-    """The columns, with tensions in a unit."""
 
     def tension(value: float) -> str:
         return fmt.number(per_N * value, 4)

@@ -298,7 +298,6 @@ def _answer(ropes: Ropes) -> str:
 
 
 def _groups_text(choice: GroupChoice) -> str:
-    """Which rope each group gets, and how sure that is."""
     chosen, proof = choice.chosen, choice.proof_sentence
     if not chosen.is_found:
         return f"Groups: none was found. {proof}"

@@ -147,7 +147,6 @@ class Overlay(QWidget):
             painter.drawPolyline([tip + QPointF(-5, 6), tip, tip + QPointF(5, 6)])
 
     def _write(self, painter: QPainter, place: QPointF, text: str) -> None:
-        """Write on a ground that keeps it readable, inside the picture."""
         box = QRectF(painter.boundingRect(QRectF(0, 0, 400, 200), 0, text))
         left = min(place.x(), self.width() - box.width() - 6)
         ground = QColor(current_theme().base)
@@ -386,7 +385,6 @@ class SceneView(QtInteractor):
         super().closeEvent(event)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Keep overlay, legend and camera at the size of the scene."""
         super().resizeEvent(event)
         self.view = replace(
             self.view, width_px=max(self.width(), 1), height_px=max(self.height(), 1)
@@ -402,7 +400,6 @@ class SceneView(QtInteractor):
     # What is asked for by mouse and keys
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Begin a drag of the platform or of the picture, or a click."""
         self.setFocus()
         self._pressed = self._last = event.position().toPoint()
         self._grip, self._gripped = self._grip_at(event.position())
@@ -448,7 +445,6 @@ class SceneView(QtInteractor):
         self._rest.start()
 
     def _click(self, place: QPointF) -> None:
-        """Measure, choose an exit point, or take the platform to what is there."""
         if self.is_measuring:
             self._measure(place, is_end=True)
         elif self._grip:
@@ -497,7 +493,6 @@ class SceneView(QtInteractor):
         self._see(self.view.zoomed(factor, event.position().x(), event.position().y()))
 
     def _see(self, view: View) -> None:
-        """Look from where the user wants to."""
         self.is_turned, self.view = True, view
         self.redraw()
 

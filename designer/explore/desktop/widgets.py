@@ -305,7 +305,6 @@ class DropDown(QComboBox):
         self.blockSignals(False)
 
     def showPopup(self) -> None:
-        """Open the list as wide as its longest entry."""
         self.view().setMinimumWidth(self.view().sizeHintForColumn(0) + 24)
         super().showPopup()
 
@@ -512,12 +511,10 @@ class Table(QTableView):
                 self.setItemDelegateForColumn(number, _ShareBar(self))
 
     def narrow(self, accepts: Callable[[Any], bool]) -> None:
-        """Show those rows alone that are accepted."""
         self._filter.accepts = accepts
         self._filter.invalidate()
 
     def row_at(self, index: QModelIndex) -> Any:
-        """Return the row that is seen there."""
         return self.rows.rows[self._filter.mapToSource(index).row()]
 
     def mark(self, is_marked: Callable[[Any], bool]) -> None:

@@ -495,7 +495,6 @@ class Window(QMainWindow):
             self.work.scene.setFocus()
 
     def show_text(self) -> None:
-        """Show the study as text, with its faults."""
         self._show_page(self.text)
         self.text.editor.setFocus()
 
@@ -529,7 +528,6 @@ class Window(QMainWindow):
     # Look, and the end
 
     def apply_theme(self, choice: str) -> None:
-        """Take the colours of a theme, or those of the system."""
         self.settings.theme = choice
         app = QApplication.instance()
         assert isinstance(app, QApplication)
