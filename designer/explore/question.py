@@ -33,7 +33,7 @@ from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Study, as_built_by, require_enough_cables
 from designer.workspace.section import section_of_pose
 
-Quick = Literal["here", "coarse", "fine", "ropes", "residuals", "worst", "requirements"]
+Quick = Literal["pose", "coarse", "fine", "ropes", "residuals", "worst", "requirements"]
 Long = Literal["select", "diagnose", "export", "optimise", "sweep"]
 Kind = Quick | Long
 Status = Literal["progress", "done", "failed", "cancelled"]

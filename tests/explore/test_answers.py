@@ -429,7 +429,7 @@ def pin_of(session: Session, **how: Any) -> Pin:
     question = session.question()
     assert question is not None
     parts = {"worst": worst_answer(question), "ropes": quick_ropes(question)} | how
-    return Pin(question, session.fields(), here=pose_answer(question), **parts)
+    return Pin(question, session.fields(), pose=pose_answer(question), **parts)
 
 
 @pytest.fixture
@@ -468,7 +468,7 @@ def test_a_heavier_load(few: Session) -> None:
         "Stiffness here": ("stiffness_N_per_m", 1e-3),
     }
     for title, (figure, scale) in in_unit.items():
-        gain = getattr(after.here, figure) - getattr(before.here, figure)
+        gain = getattr(after.pose, figure) - getattr(before.pose, figure)
         assert lines[title].difference == pytest.approx(scale * gain)
     assert Rope(WIRE, "7/32 in") in found.lost
     assert found.gained == ()

@@ -87,7 +87,7 @@ class Ages(QObject):
 
 
 def _state_of(aspect: str, question: Question) -> object:
-    if aspect == "here":
+    if aspect == "pose":
         return question.text, question.rope, question.place.tobytes()
     if aspect in ("map", "worst"):
         return question.text, question.rope
@@ -105,7 +105,7 @@ _SHOWN_AS: dict[Kind, tuple[str, ...]] = {
 LONG: tuple[Long, ...] = ("select", "diagnose", "export", "optimise", "sweep")
 """What takes long: with progress, and cancelled by hand."""
 NAMES: dict[str, str] = {
-    "here": "the pose",
+    "pose": "the pose",
     "coarse": "the map",
     "fine": "the map",
     "worst": "the worst pose",
@@ -219,7 +219,7 @@ class LiveSession(QObject):
         question = None if self.session is None else self.session.question()
         if self.session is None or question is None:
             return None
-        answers = (self.answers.get(kind) for kind in ("here", "worst", "ropes"))
+        answers = (self.answers.get(kind) for kind in ("pose", "worst", "ropes"))
         return Pin(question, self.session.fields(), *answers)
 
     # Which study
@@ -399,14 +399,14 @@ class LiveSession(QObject):
             self._worker.cancel("select")
             self._newest["select"] = self._pending.pop("select")
             self._tell_failed("select", "given up, since the study has changed")
-        self._ask("here", question)
+        self._ask("pose", question)
         # A map is the same wherever the platform is.
         if before is None or (before.text, before.rope) != (question.text, question.rope):
             if moving:
                 self._ask("coarse", question)
             self._rest.start(_REST_MS if moving else 0)
         elif not moving:
-            self._ask("here", question, settled=True)
+            self._ask("pose", question, settled=True)
 
     def _ask_map(self, kind: Kind) -> None:
         if self.question is not None:
@@ -417,7 +417,7 @@ class LiveSession(QObject):
             kinds: tuple[Kind, ...] = ("fine", "ropes", "worst")
             for kind in kinds:
                 self._ask(kind, self.question)
-            self._ask("here", self.question, settled=True)
+            self._ask("pose", self.question, settled=True)
             if self.question.study.selection is None:
                 self._ask("requirements", self.question)
             if self.question.study.measurements is not None:

@@ -71,8 +71,8 @@ class ModeWindow(QDialog):
         self._answer: PoseAnswer | None = None
         self._lines: FloatArray | None = None
         self._moves = _NO_MOVES
-        live.listen(self._show_here, "here")
-        grey_when_old(live, {"here"}, self.words)
+        live.listen(self._show_answer, "pose")
+        grey_when_old(live, {"pose"}, self.words)
 
     def showEvent(self, event: QShowEvent) -> None:
         self._show_modes()
@@ -89,7 +89,7 @@ class ModeWindow(QDialog):
         number = self.chosen.currentIndex()
         self.moves_in_scene.emit(None if modes is None or number < 0 else modes.modes[number].shape)
 
-    def _show_here(self, answer: PoseAnswer | None) -> None:
+    def _show_answer(self, answer: PoseAnswer | None) -> None:
         self._answer = answer
         if self.isVisible():
             self._show_modes()
@@ -222,15 +222,15 @@ class PanelPose(QWidget):
     def __init__(self, live: LiveSession) -> None:
         super().__init__()
         self._live = live
-        self.setObjectName("here")
+        self.setObjectName("pose")
         self.setMinimumWidth(384)
         self._place = np.zeros(6)
         self._entries: list[LineEntry] = []
         self._turn_labels: list[QLabel] = []
         self.verdict, self.cautions = result("verdict"), result("cautions", "fault")
-        self.facts = {name: result(f"here {name}", tip=tip) for name, _, tip in _FACTS}
+        self.facts = {name: result(f"pose {name}", tip=tip) for name, _, tip in _FACTS}
         self.stability = result(
-            "here stability", tip="Whether the platform stays here with the winches held."
+            "pose stability", tip="Whether the platform stays here with the winches held."
         )
         self.table = Table("cables", _columns("kN", 1e-3))
         small = self.table.font()
@@ -269,9 +269,9 @@ class PanelPose(QWidget):
         rows.addWidget(self.table, 1)
         rows.addLayout(row_of(keep, modes))
         live.moved.connect(self._show_place)
-        live.listen(self._show_here, "here")
+        live.listen(self._show_answer, "pose")
         results = self.verdict, self.cautions, self.stability, self.table, *self.facts.values()
-        grey_when_old(live, {"here"}, *results)
+        grey_when_old(live, {"pose"}, *results)
 
     def _show_place(self) -> None:
         """Show where the platform is; an entry that is being written in is left alone."""
@@ -291,7 +291,7 @@ class PanelPose(QWidget):
         for title in self._turn_labels:
             title.setVisible(can_turn)
 
-    def _show_here(self, answer: PoseAnswer | None) -> None:
+    def _show_answer(self, answer: PoseAnswer | None) -> None:
         if answer is None:
             self.table.rows.show(())
             return

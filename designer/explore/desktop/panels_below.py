@@ -336,7 +336,7 @@ class PanelCompare(QWidget):
         panel(self, "compare", above, self._summary, self.table)
         live.answered.connect(self._show_differences)
         live.changed.connect(self._show_differences)
-        grey_when_old(live, {"here", "worst", "ropes"}, self._summary, self.table)
+        grey_when_old(live, {"pose", "worst", "ropes"}, self._summary, self.table)
         self._show_differences()
 
     def _show_differences(self) -> None:

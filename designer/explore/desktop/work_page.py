@@ -98,7 +98,7 @@ class WorkPage(QWidget):
         live.quantity_changed.connect(
             lambda key: self.quantity.setCurrentIndex(self.quantity.findData(key))
         )
-        live.listen(self._show_here, "here")
+        live.listen(self._show_answer, "pose")
         live.listen(self.show_map, "coarse", "fine")
         live.listen(self._show_worst, "worst")
         live.listen(self._take_residuals, "residuals")
@@ -193,7 +193,7 @@ class WorkPage(QWidget):
             if not self.plays_path.isChecked():  # else with its cables, once they are answered
                 self._show_place()
 
-    def _show_here(self, answer: PoseAnswer | None) -> None:
+    def _show_answer(self, answer: PoseAnswer | None) -> None:
         self._pose_answer = answer
         self._show_place()
 
@@ -235,7 +235,7 @@ class WorkPage(QWidget):
         motion = None if self._study is None else self._study.robot.platform.motion
         if motion is None or not self.isVisible():
             self.plays_path.setChecked(False)
-        elif "here" not in self._live.busy:
+        elif "pose" not in self._live.busy:
             time_s = motion.time_s - motion.time_s[0]
             pace = max(float(time_s[-1]) / _LONGEST_PATH_S, 1.0)
             number = int(np.searchsorted(time_s, (time.monotonic() - self._play_start_s) * pace))

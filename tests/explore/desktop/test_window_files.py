@@ -615,7 +615,7 @@ def test_a_study_without_a_workspace_is_explored_pose_by_pose(yard: Driver, tmp_
     bare = tmp_path / "bare.yaml"
     bare.write_text(text[: text.index("workspace:")], encoding="utf-8")
     yard.open(bare)
-    assert yard.window.live.answers["here"].cables
+    assert yard.window.live.answers["pose"].cables
     assert yard.window.live.answers["ropes"] is None
     assert "over the workspace" in yard.window.ropes.answer.text()
     yard.window.live.begin_long("select")

@@ -37,7 +37,7 @@ def test_the_same_numbers_as_the_command(yard: Driver) -> None:
         assert row[1] == fmt.fixed(float(statics.length_m[cable]), 3)
         assert row[2] == fmt.number(float(statics.exit_tension_N[cable]) / 1e3, 4)
         assert row[3] == fmt.number(float(statics.platform_tension_N[cable]) / 1e3, 4)
-    assert yard.find(QLabel, "here diameter").text() == fmt.millimetres(float(sized.diameter_m))
+    assert yard.find(QLabel, "pose diameter").text() == fmt.millimetres(float(sized.diameter_m))
     assert (
         yard.find(QLabel, "verdict").text() == "The cables hold the platform; both residuals "
         "are within tolerance."
@@ -95,7 +95,7 @@ def test_small_robots_are_told_in_newtons(empty: Driver) -> None:
     assert model.headerData(2, Qt.Orientation.Horizontal).endswith("\nN")
     tension = float(model.index(0, 2).data().replace("\u202f", ""))
     assert tension == pytest.approx(
-        empty.window.live.answers["here"].cables[0].exit_tension_N, rel=1e-3
+        empty.window.live.answers["pose"].cables[0].exit_tension_N, rel=1e-3
     )
     assert math.isfinite(tension)
 
@@ -318,7 +318,7 @@ FAMILY = "Thinnest cable of the family"
 
 
 def test_map_and_pose_name_the_rope_that_they_are_of(yard: Driver) -> None:
-    legend, here = yard.scene.colour_legend, yard.find(QLabel, "here cables")
+    legend, here = yard.scene.colour_legend, yard.find(QLabel, "pose cables")
     best = yard.session.state.rope
     assert legend.texts[1] == here.text() == best.label
     yard.keys("Ctrl+2")
@@ -376,7 +376,7 @@ def saturation(driver: Driver) -> int:
 
 
 def test_results_of_an_older_state_are_grey(yard: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
-    names = ("verdict", "here tension", "best rope")
+    names = ("verdict", "pose tension", "best rope")
     results = [*(yard.find(QLabel, name) for name in names)]
     results += [yard.find(QTableView, name) for name in ("cables", "candidates")]
     legend, goes_on = yard.scene.colour_legend, threading.Event()
@@ -390,7 +390,7 @@ def test_results_of_an_older_state_are_grey(yard: Driver, monkeypatch: pytest.Mo
 
         return wait
 
-    for name in ("here", "map_answer"):
+    for name in ("pose_answer", "map_answer"):
         monkeypatch.setattr(worker, name, held_back(getattr(worker, name)))
     assert saturation(yard) > 60
     colours = yard.picture(results[1])
@@ -426,7 +426,7 @@ def test_differences_follow_the_study(yard: Driver) -> None:
     yard.rest()
     found = differences(yard)
     assert found["Platform with payload"] == ["180 kg", "230 kg", ""]
-    here = yard.window.live.answers["here"]
+    here = yard.window.live.answers["pose"]
     assert found["Diameter needed here"][1] == f"{1e3 * here.diameter_m:.3f} mm"
     assert found["Diameter needed here"][2].startswith("+")
     yard.window.docks["Compare"].raise_()

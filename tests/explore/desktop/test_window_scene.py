@@ -103,7 +103,7 @@ def test_keys_turn_a_platform(empty: Driver) -> None:
     empty.keys("Ctrl+Shift+Up")
     assert np.degrees(np.linalg.norm(empty.place[3:])) == pytest.approx(10.05, abs=0.1)
     empty.rest()
-    assert empty.window.live.answers["here"].cables
+    assert empty.window.live.answers["pose"].cables
 
 
 def test_the_mouse_reads_the_map(yard: Driver) -> None:
@@ -173,13 +173,13 @@ def test_sag_is_exaggerated_for_the_eye_alone(yard: Driver) -> None:
         straight = curves[:, :1] + share * (curves[:, -1:] - curves[:, :1])
         return float(np.abs(curves - straight).max())
 
-    true, sag_m = deviation(), yard.window.live.answers["here"].cables[0].sag_m
+    true, sag_m = deviation(), yard.window.live.answers["pose"].cables[0].sag_m
     box = yard.find(QComboBox, "sag exaggeration")
     box.setFocus()
     yard.keys("Down")
     yard.keys("Down")
     assert deviation() == pytest.approx(5.0 * true, rel=1e-6)
-    assert yard.window.live.answers["here"].cables[0].sag_m == sag_m
+    assert yard.window.live.answers["pose"].cables[0].sag_m == sag_m
     assert "sag exaggerated 5 times" in yard.scene.overlay.texts()
 
 
@@ -336,7 +336,7 @@ def test_a_path_is_played(yard: Driver) -> None:
     yard.open(file)
     assert player.isVisible()
     before, seen = yard.place.copy(), []
-    yard.window.live.listen(lambda answer: answer and seen.append(answer.statics.poses), "here")
+    yard.window.live.listen(lambda answer: answer and seen.append(answer.statics.poses), "pose")
     yard.keys("Ctrl+P")
     yard.bot.waitUntil(lambda: yard.scene.overlay.note.startswith("path: "), timeout=LONGEST_MS)
     yard.bot.waitUntil(lambda: not player.isChecked(), timeout=LONGEST_MS)
@@ -363,7 +363,7 @@ def test_a_mode_moves_in_the_scene(yard: Driver) -> None:
         return bool(np.ptp(ends, axis=0).max() > 0.1)
 
     yard.bot.waitUntil(look, timeout=LONGEST_MS)
-    shape = yard.window.live.answers["here"].modes.modes[0].shape
+    shape = yard.window.live.answers["pose"].modes.modes[0].shape
     away = np.array(ends) - yard.place[:3]
     assert np.cross(away, shape[:3]) == pytest.approx(np.zeros_like(away), abs=1e-3)
     modes.hide()
