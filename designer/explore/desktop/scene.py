@@ -184,6 +184,7 @@ class Legend(QFrame):
         self.setFixedWidth(_WIDTH_PX)
         self.hide()
         self.steps: Steps | None = None
+        self._is_old = False
         self._meanings: tuple[str, ...] = ()
         self._title, self._note = label("", "heading"), label("", "muted")
         self._bar, self._keys = ColourBar(), QFormLayout()
@@ -205,7 +206,7 @@ class Legend(QFrame):
         self.steps, self._meanings = painting.steps, tuple(key.meaning for key in keys)
         self._title.setText(painting.title)
         self._note.setText(painting.note(answer))
-        self._bar.show_steps(painting.steps, painting.is_old)
+        self._is_old = painting.is_old
         while self._keys.rowCount():
             self._keys.removeRow(0)
         for key in keys:
@@ -222,7 +223,15 @@ class Legend(QFrame):
             swatch.setPixmap(picture)
             self._keys.addRow(swatch, meaning)
         self.show()
-        self.resize(_WIDTH_PX, self.heightForWidth(_WIDTH_PX))
+
+    def fit(self, room_px: int) -> None:
+        """Be no higher than this, if need be with every second or fourth tick alone."""
+        for every in (1, 2, 4):
+            self._bar.show_steps(self.steps, self._is_old, every)
+            height = self.heightForWidth(_WIDTH_PX)
+            if height <= room_px:
+                break
+        self.resize(_WIDTH_PX, height)
 
 
 class ColourBar(QWidget):
@@ -231,12 +240,15 @@ class ColourBar(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._steps: Steps | None = None
+        self._ticks: list[float] = []
         self._is_old = False
 
-    def show_steps(self, steps: Steps | None, is_old: bool) -> None:
-        """Show a scale, grey where it is of an older state; nothing for None."""
+    def show_steps(self, steps: Steps | None, is_old: bool, every: int) -> None:
+        """Show a scale with every so many of its ticks, 0 among them; nothing for None."""
         self._steps, self._is_old = steps, is_old
-        lines = 0.0 if steps is None else 1.25 * len(steps.ticks) + 1.2
+        ticks = [] if steps is None else [float(tick) for tick in steps.ticks]
+        self._ticks = ticks[ticks.index(0.0) % every if 0.0 in ticks else 0 :: every]
+        lines = 0.0 if steps is None else 1.25 * len(self._ticks) + 1.2
         self.setFixedHeight(round(lines * self.fontMetrics().height()))
         self.setVisible(steps is not None)
         self.update()
@@ -258,7 +270,7 @@ class ColourBar(QWidget):
             painter.drawRect(QRectF(0, at(number + 1), _BAR_PX, height / count + 0.5))
         painter.setPen(QColor(current_theme().ink))
         for number, edge in enumerate(self._steps.edges):
-            if edge in self._steps.ticks:
+            if float(edge) in self._ticks:
                 y = at(number)
                 painter.drawLine(QPointF(_BAR_PX, y), QPointF(_BAR_PX + 4, y))
                 place = QRectF(_BAR_PX + 8, y - 0.5 * line, _WIDTH_PX, line)
@@ -394,6 +406,8 @@ class SceneView(QtInteractor):
         self.resized.emit()
 
     def place_legend(self) -> None:
+        if not self.colour_legend.isHidden():
+            self.colour_legend.fit(self.height() - 24)
         self.colour_legend.move(self.width() - self.colour_legend.width() - 12, 12)
         self.overlay.legend_px = self.colour_legend.width() + 12
 

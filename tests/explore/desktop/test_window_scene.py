@@ -390,3 +390,31 @@ def test_nothing_is_cut_off(
     bar = empty.find(QCheckBox, "rule").parentWidget()
     for box in bar.findChildren(QWidget):
         assert not box.isVisible() or bar.rect().contains(box.geometry()), box.objectName()
+
+
+def test_legend_fits_into_a_low_scene(empty: Driver, tmp_path: Path) -> None:
+    empty.window.resize(1024, 700)
+    empty.open(small_yard(tmp_path))
+    empty.window.live.pin()
+    empty.type_into("entry robot.platform.mass", "190 kg")
+    empty.rest()
+    empty.window.compare.in_map.setChecked(True)
+    empty.rest()
+    legend = empty.scene.colour_legend
+    assert len(legend.steps.ticks) > 10
+    assert 0.0 in legend._bar._ticks
+    assert empty.scene.rect().contains(legend.geometry())
+
+
+def test_worst_pose_covers_no_name_of_an_exit_point(yard: Driver) -> None:
+    overlay = yard.scene.overlay
+    overlay.worst = (yard.session.study.robot.exit_points_m[0] - [0.3, 0.0, 0.0], "worst pose")
+    written: list[float] = []
+    write = overlay._write
+    overlay._write = lambda painter, place, text: (
+        written.append(place.y()) or write(painter, place, text)
+    )
+    overlay.repaint()
+    del overlay._write
+    assert written
+    assert written[-1] > yard.scene.view.pixels(overlay.worst[0])[1]
