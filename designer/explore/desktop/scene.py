@@ -94,9 +94,9 @@ class Overlay(QWidget):
             corner = QPointF(x + 6 if has_room else x - 6 - width, y - 6)
             painter.drawText(corner, name)
             names.append(QRectF(corner.x(), corner.y() - 14, width, 18))
-        self._draw_worst(painter, names)
         for place_m in (self.platform_m, self.chosen_m):
             self._draw_handle(painter, place_m)
+        self._draw_worst(painter, names)
         self._draw_rule(painter)
         if self.pointed is not None:
             place, text = self.pointed
