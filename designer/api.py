@@ -25,7 +25,7 @@ from designer.io.results import read_result
 from designer.model.motion import limited, timed
 from designer.model.region import PointList
 from designer.model.robot import Poses
-from designer.model.space import EachPose, Orientations
+from designer.model.space import ListedOrientations, Orientations
 from designer.model.workspace import Workspace
 from designer.plugins import find_plugins
 from designer.progress import SILENT, Reporter
@@ -166,7 +166,11 @@ def follow(
     if motion.turns and platform.inertia_kg_m2 is None:
         raise WrongValueError("Platform", "inertia_kg_m2", "inertia_kg_m2 is missing: it turns")
     region = PointList(np.unique(motion.positions_m, axis=0))
-    law = EachPose.of(motion.positions_m, motion.rotation_vectors_rad) if motion.turns else None
+    law = (
+        ListedOrientations.of(motion.positions_m, motion.rotation_vectors_rad)
+        if motion.turns
+        else None
+    )
     workspace = study.workspace or Workspace(region)
     workspace = replace(workspace, region=region, orientations=Orientations(law=law))
     return replace(study, robot=replace(study.robot, platform=platform), workspace=workspace)

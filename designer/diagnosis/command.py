@@ -303,7 +303,7 @@ def _write_plan(
     from designer.analysis.lengths import Lengths
     from designer.diagnosis.plan import plan
     from designer.diagnosis.plan_report import write_plan_report
-    from designer.selection.qualities import DesignCable
+    from designer.selection.assignment import DesignCable
 
     with output_folder(folder) as building, ProgressBars("planning") as bars:
         if is_table:

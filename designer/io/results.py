@@ -11,7 +11,7 @@ from typing import Any
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.reactions import reactions_csv
-from designer.analysis.selection_json import candidates_csv
+from designer.analysis.result_json import candidates_csv
 from designer.documents import document
 from designer.documents.document import DEEPEST_NESTING, Flaw, Keys
 from designer.documents.fields import MOST_FAULTS

@@ -17,7 +17,7 @@ from designer.errors import InputError
 from designer.io.poses import read_poses
 from designer.model.cable import Material
 from designer.model.robot import Poses
-from designer.selection.qualities import DesignCable
+from designer.selection.assignment import DesignCable
 from designer.statics.fixed_length import cables_of_length
 
 __all__ = ["designer"]
