@@ -46,13 +46,14 @@ def imported_rooms(file: Path) -> set[str]:
         if isinstance(node, ast.If) and getattr(node.test, "id", None) == "TYPE_CHECKING"
         for inner in ast.walk(node)
     }
-    found = set()
+    names = []
     for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and node.module and id(node) not in only_types:
-            parts = node.module.split(".")
-            if parts[0] == "designer":
-                found |= {parts[1]} if len(parts) > 1 else {alias.name for alias in node.names}
-    return found
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and id(node) not in only_types:
+            names += [f"{node.module}.{alias.name}" for alias in node.names]
+    parts = (name.split(".") for name in names)
+    return {room for package, room, *_ in (p for p in parts if len(p) > 1) if package == "designer"}
 
 
 def test_every_room_has_its_place() -> None:
