@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.markup import escape
 
 from designer.cli.options import (
     Config,
@@ -21,7 +22,7 @@ from designer.cli.options import (
     study_of,
 )
 from designer.errors import InputError
-from designer.spelling import did_you_mean
+from designer.spelling import did_you_mean, in_runs
 from designer.units import FORCE, LENGTH, Dimension
 
 if TYPE_CHECKING:
@@ -175,10 +176,7 @@ def _estimated(estimate: Estimate) -> str:
 
 def _found(diagnosis: Diagnosis) -> Iterator[Row]:
     """Yield the effects, what speaks against the model, and what was withdrawn."""
-    from rich.markup import escape
-
     from designer.cli.tables import bad
-    from designer.spelling import in_runs
 
     if diagnosis.measured.thinned:
         yield "a long log", diagnosis.measured.thinned
@@ -213,8 +211,6 @@ def _found(diagnosis: Diagnosis) -> Iterator[Row]:
 
 def _bettered(diagnosis: Diagnosis) -> Iterator[Row]:
     """Yield the errors and the cables before and after."""
-    from rich.markup import escape
-
     from designer.cli.tables import bad
 
     for kind, *errors in diagnosis.errors:

@@ -14,8 +14,7 @@ from twins.dataset import make
 from twins.robots import YARD3
 
 from designer import effects
-from designer.cli.commands import main
-from designer.cli.schema import schema
+from designer.cli.commands import main, schema
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose_study
 from designer.diagnosis.study import diagnosed_config
