@@ -25,7 +25,7 @@ from designer.selection.verify import Verification, verify
 from designer.sizing.newton import limit_ratio, size_poses
 from designer.statics.free_motion import FreeMotion
 from designer.statics.inverse import solve_sagging
-from designer.statics.sizes import is_quick
+from designer.statics.sizes import has_fast_solver
 from designer.workspace.demand import is_left_out
 from designer.workspace.sweep import WorkspaceMap, map_workspace, open_sweep
 
@@ -283,7 +283,7 @@ def _hanging(analysis: Analysis) -> float | None:
 
 def _few(robot: Robot, workspace: Workspace) -> Workspace:
     """Return the same with fewer positions where each pose takes long."""
-    if is_quick(robot):
+    if has_fast_solver(robot):
         largest = _MOST_SAMPLES
     else:
         largest = max(_FEW_PLACES // workspace.orientations.count, _FEW_POSITIONS)

@@ -41,16 +41,12 @@ from designer.proof.prove import Budget, Proof, prove
 from designer.selection.verify import Sampled, Verification, refined_each, verify_sizes
 from designer.statics.cable_loss import CableLoss
 from designer.statics.inverse import Statics, solve_sagging
-from designer.statics.sizes import is_quick
+from designer.statics.sizes import has_fast_solver
 from designer.workspace.demand import is_left_out, rope_demand, settled, tension_demand
+from designer.workspace.effort import CHOSEN_SETTLING, COARSE
 from designer.workspace.refine import LIGHT, refine
 from designer.workspace.section import in_lockstep
 
-FEW_AT_FIRST, FEW_OF_QUICK = 128, 2048
-"""Samples that candidates are tried at first where all of them take long; on robots that are quick
-to solve, and for the worst pose of a continuous family."""
-FEW_SAMPLES, _MOST_SAMPLES = 64, 256
-"""Poses in which lengths are kept, for each candidate and for the chosen one."""
 _CLOSE = 0.95
 """Of the utilisation that governs: from where on other cases and directions are searched, too."""
 _MAX_ITERATIONS, _MAX_SECANTS = 6, 20
@@ -238,9 +234,8 @@ class Cases:
 
         On robots that are slow to solve only where there is more than the static case.
         """
-        if is_quick(self.robot):
-            return replace(self, sample_limit=FEW_OF_QUICK)
-        return replace(self, sample_limit=FEW_AT_FIRST) if len(self.load_cases) > 1 else self
+        is_coarse = has_fast_solver(self.robot) or len(self.load_cases) > 1
+        return replace(self, sample_limit=COARSE.of(self.robot)) if is_coarse else self
 
     @property
     def sample_count(self) -> int:
@@ -309,7 +304,7 @@ def over_samples(
     if not loaded:
         return []
     if any(candidate.keeps_lengths for candidate in loaded):
-        return [_over_kept_lengths(candidate, workspace, FEW_SAMPLES) for candidate in loaded]
+        return [_over_kept_lengths(candidate, workspace, COARSE.settling) for candidate in loaded]
     # Which poses are left out the compiled sweep cannot tell: its down is the load.
     if workspace.hangs_below == "exclude" and loaded[0].robot.cable_load_direction is not None:
         return [_by_true_vertical(candidate, workspace) for candidate in loaded]
@@ -498,7 +493,7 @@ def _by_load(results: Sequence[CaseResult]) -> Iterable[list[CaseResult]]:
 def _search_settled(result: CaseResult) -> CaseResult:
     """Search for the worst pose of a platform that settles on the lengths that it has."""
     loaded, workspace = result.loaded, result.workspace
-    sampled = _over_kept_lengths(loaded, workspace, _MOST_SAMPLES)
+    sampled = _over_kept_lengths(loaded, workspace, CHOSEN_SETTLING)
     demand = partial(tension_demand, loaded, workspace.hangs_below)
     starts = np.concatenate([result.sampled.worst_places, sampled.worst_places])
     (worst,) = refine(workspace.space, demand, starts, LIGHT)

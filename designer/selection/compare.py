@@ -18,9 +18,8 @@ from designer.model.load_case import STATIC
 from designer.model.verdict import Requirement, State
 from designer.progress import Reporter
 from designer.selection.candidate import MEANINGS, Candidate, Standing
-from designer.selection.criteria import Criterion
+from designer.selection.criteria import Criterion, Evaluation, evaluate, loads_of, strength_of
 from designer.selection.reeving import drum_of, sheave_ratio_of, spooling_of
-from designer.selection.requirements import Evaluation, evaluate, loads_of, strength_of
 from designer.selection.verify import Verification
 from designer.spelling import position
 from designer.study import Objective, Selection

@@ -26,13 +26,20 @@ from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.progress import Reporter
-from designer.selection.cases import FEW_OF_QUICK, CaseResult, Cases, governing, refine_all
+from designer.selection.cases import CaseResult, Cases, governing, refine_all
 from designer.selection.reeving import Allowance
 from designer.sizing.newton import size_poses
 from designer.study import Study
 from designer.workspace.demand import diameter_demand
+from designer.workspace.effort import COARSE
 from designer.workspace.refine import Worst, worst_over_samples
-from designer.workspace.section import FIRST_TRIED_M, FamilyAt, in_lockstep, thinnest, thinnest_that
+from designer.workspace.section import (
+    FIRST_TRIED_M,
+    FamilyAt,
+    in_lockstep,
+    min_diameter_where,
+    thinnest,
+)
 
 _MAX_ITERATIONS = 20
 """Of a fixed point, so that it ends: the need falls steeply, so a few reach it."""
@@ -91,7 +98,7 @@ def continuous_optima(
 
         known = [worst_places[k] for k in unsettled]
         extremes = worst_over_samples(
-            workspace, demand, len(materials), most=FEW_OF_QUICK, known=known
+            workspace, demand, len(materials), most=COARSE.quick, known=known
         )
         for k, (worst,) in zip(unsettled, extremes, strict=True):
             # Where every pose is left out, nothing is served.
@@ -203,7 +210,7 @@ def family_need(
             loaded = worst.loaded.on(worst.loaded.bare[0], cable(diameter_m))
             return worst.tension_N(loaded) <= loaded.cable.allowable_tension_N
 
-        return thinnest_that(serves)
+        return min_diameter_where(serves)
 
     section_m, diameter_m = 0.0, FIRST_TRIED_M
     for _ in range(_MAX_ITERATIONS):

@@ -56,12 +56,10 @@ from designer.selection.result import (
     usable,
 )
 from designer.selection.verify import Verification, verify_sizes
-from designer.statics.sizes import is_quick
+from designer.statics.sizes import has_fast_solver
 from designer.study import Selection
+from designer.workspace.effort import GUESS
 from designer.workspace.stiffness import smallest_stiffness_N_per_m
-
-_FEW = 16
-"""Places that tell which grade serves most, where each pose takes long: a guess is enough."""
 
 
 def select(
@@ -418,11 +416,11 @@ def _usable(
         sized = [o for o in sized if o.grade is chosen.grade]
     if not sized:
         return None
-    places = workspace.thinned(_FEW)
+    places = workspace.thinned(GUESS)
 
     def most_served(outcome: GradeOutcome) -> float:
         cables = [c.cable for c in outcome.candidates]
-        if not is_quick(robot):
+        if not has_fast_solver(robot):
             return max(float(serves(robot, workspace, c, places).mean()) for c in cables)
         return max(s.served for s in verify_sizes(robot, workspace, cables, gives_up=False))
 

@@ -12,13 +12,13 @@ from itertools import chain, compress, pairwise
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.kernel.calling import Meets
+from designer.kernel.calling import LoadSummary
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.statics.inverse import solve_sagging
-from designer.statics.sizes import add_slowly, is_quick, meet
+from designer.statics.sizes import add_slowly, evaluate_sizes, has_fast_solver
 from designer.workspace.demand import rope_demand
 from designer.workspace.refine import (
     Demand,
@@ -190,7 +190,7 @@ def verify_sizes(
     """
     # The heavy ones first: slack cables are the harder, and start best from slack ones.
     order = sorted(range(len(cables)), key=lambda k: -cables[k].mean_density_kg_per_m)
-    space, is_slow = workspace.space, not is_quick(robot)
+    space, is_slow = workspace.space, not has_fast_solver(robot)
     totals = _Totals(len(cables), robot.n_cables, space.n_coordinates)
     samples = ((places, True) for places in workspace.places())
     chunk_size = 2**9 if is_slow else 2**11
@@ -216,7 +216,7 @@ def verify_sizes(
     return [totals.of(k) for k in range(len(cables))]
 
 
-def _refutes(meets: Meets) -> bool:
+def _refutes(meets: LoadSummary) -> bool:
     return bool(meets.failed.any() or (meets.utilisation > 1.0).any())
 
 
@@ -232,7 +232,7 @@ def _survivors(
     cell = np.zeros(1, dtype=np.int64)
     meets, lost = _meet(robot, workspace, place, [cables[k] for k in alive], cell, True)
     refuted = np.asarray(meets.failed.any(axis=1) | (meets.utilisation > 1.0).any(axis=1))
-    of_refuted = Meets._make(values[refuted] for values in meets)
+    of_refuted = LoadSummary._make(values[refuted] for values in meets)
     refuted_rows = list(compress(alive, refuted))
     totals.add(refuted_rows, place[lost[refuted]], place, of_refuted, counts=False)
     return list(compress(alive, ~refuted))
@@ -245,11 +245,11 @@ def _meet(
     cables: Sequence[Cable],
     cells: IntArray,
     gives_up: bool,
-) -> tuple[Meets, IntArray]:
+) -> tuple[LoadSummary, IntArray]:
     """Return what the cables meet, and of each a pose that it is not able to hold, if any (n,)."""
     poses, exclude = Poses.at(positions), workspace.hangs_below == "exclude"
-    meets = meet(robot, poses, cables, cells, _CELLS, leaves_out_hanging=exclude)
-    if not is_quick(robot):
+    meets = evaluate_sizes(robot, poses, cables, cells, _CELLS, leaves_out_hanging=exclude)
+    if not has_fast_solver(robot):
         return meets, meets.failed.argmax(axis=1)
     lost = np.zeros(len(cables), dtype=np.int64)
     open_rows = np.flatnonzero(meets.failed.any(axis=1))
@@ -297,7 +297,7 @@ class _Totals:
         rows: Sequence[int],
         lost: FloatArray,
         positions: FloatArray,
-        meets: Meets,
+        meets: LoadSummary,
         counts: bool,
     ) -> None:
         """Add what cables met at positions, and where each is lost, if it is."""
