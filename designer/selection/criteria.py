@@ -165,9 +165,9 @@ def _of_cables(least_N: float, sag_max: float) -> Iterator[Criterion]:
 def _of_winches(robot: Robot) -> Iterator[Criterion]:
     """Yield what is asked of the winches in every equilibrium, along a path as they turn there."""
     winches, moves = robot.winches, robot.platform.motion is not None
-    kept = winches.reeving_efficiency
+    share = winches.reeving_efficiency
     paid_out = ", times that as it is paid out," if moves else ","
-    losses = "" if kept == 1.0 else f", over the {kept:.4g} that its sheaves keep of it{paid_out}"
+    losses = "" if share == 1.0 else f", over the {share:.4g} that its sheaves keep of it{paid_out}"
     if winches.tension_max_N is not None:
         yield Criterion(
             id="winch_tension",
@@ -252,7 +252,7 @@ def _motor_torque_Nm(loaded: Loaded, statics: Statics) -> FloatArray:
 def rope_diameter_m(cable: Cable | Cables) -> FloatArray | float:
     """Return the diameter of all cables, or of each (n_cables,) [m]."""
     if isinstance(cable, Cables):
-        return np.array([each.diameter_m for each in cable.each])
+        return np.array([of_cable.diameter_m for of_cable in cable.each])
     return cable.diameter_m
 
 
@@ -340,8 +340,8 @@ def _frequency_Hz(
 ) -> FloatArray:
     """Return the lowest natural frequency, or that deepest in a band (n, 1)."""
     body, density = loaded.moving_body, loaded.moving_density_kg_per_m
-    middle, near = (0.0, NEAR) if len(limits) == 1 else (math.sqrt(math.prod(limits)), math.inf)
-    figures = frequencies_Hz(statics, body, density, middle, of_platform=of_platform, near=near)
+    middle, nearness = (0.0, NEAR) if len(limits) == 1 else (math.sqrt(math.prod(limits)), math.inf)
+    figures = frequencies_Hz(statics, body, density, middle, of_platform=of_platform, near=nearness)
     return figures[:, None]
 
 
@@ -589,8 +589,8 @@ def _breaking_load(result: CaseResult, selection: Selection) -> Requirement:
     terms, verification = selection.under(result.case), result.verification
     factor = terms.safety_factor
     is_known = verification.is_refined or not verification.holds
-    kept = result.loaded.robot.winches.reeving_efficiency
-    bending = "bending" if kept == 1.0 else f"bending times the {kept:.4g} that sheaves keep"
+    share = result.loaded.robot.winches.reeving_efficiency
+    bending = "bending" if share == 1.0 else f"bending times the {share:.4g} that sheaves keep"
     return Requirement(
         id="breaking_load",
         title="Breaking load",

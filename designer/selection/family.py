@@ -93,8 +93,8 @@ def continuous_optima(
         materials = [families[k] for k in unsettled]
 
         def demand(places: FloatArray, search: IntArray, **how: bool) -> FloatArray:
-            each = MaterialsByPose(materials, search)
-            return diameter_demand(built.robot, each, hangs_below, places, **how)
+            materials_by_pose = MaterialsByPose(materials, search)
+            return diameter_demand(built.robot, materials_by_pose, hangs_below, places, **how)
 
         known = [worst_places[k] for k in unsettled]
         extremes = worst_over_samples(

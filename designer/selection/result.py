@@ -211,10 +211,13 @@ def usable(
     """
     samples = 0
     served, lost = np.zeros((2, len(cables)))
-    few = coverage_samples(workspace)
-    for some in workspace.places() if has_fast_solver(robot) else [workspace.thinned(few)]:
-        each = np.stack([serves(robot, workspace, cable, some) for _, cable in cables])
-        at = each.reshape(len(cables), -1, workspace.orientations.count).all(axis=2)
+    if has_fast_solver(robot):
+        batches = workspace.places()
+    else:
+        batches = iter([workspace.thinned(coverage_samples(workspace))])
+    for batch in batches:
+        is_served = np.stack([serves(robot, workspace, cable, batch) for _, cable in cables])
+        at = is_served.reshape(len(cables), -1, workspace.orientations.count).all(axis=2)
         samples += at.shape[1]
         served += at.sum(axis=1)
         lost += (np.logical_or.accumulate(at, axis=0) & ~at).sum(axis=1)

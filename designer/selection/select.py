@@ -42,7 +42,7 @@ from designer.selection.cases import (
     resettled,
     with_stiffness_of,
 )
-from designer.selection.compare import Screen, best_of, may_win, settle, settle_standing
+from designer.selection.compare import Screen, best_of, may_win, settle, standing_of
 from designer.selection.criteria import criteria_of
 from designer.selection.family import ContinuousOptimum, continuous_optima
 from designer.selection.reeving import Allowance, sheave_ratio_of, why_not_bent
@@ -373,32 +373,27 @@ class _SelectionRun:
     ) -> GradeOutcome:
         """Return what became of a grade, and of each of its sizes."""
         for candidate in candidates:
-            settle_standing(candidate, front, self.selection.objectives)
+            standing = standing_of(candidate, front, self.selection.objectives)
+            candidate.standing, candidate.reason = standing
             candidate.requirements = self.screen.requirements(candidate)
             candidate.cases = governing_directions(candidate.cases)
+        outcome: Outcome = "fits"
+        if best is None or best.rejected_by is not None:
+            is_proved = optimum.verdict is not None and optimum.verdict.is_proved
+            outcome = "no_finite_cable" if is_proved else "open"
+            if any(candidate.verification.holds for candidate in candidates):
+                outcome = "rejected"
+            elif math.isfinite(optimum.diameter_m):
+                outcome = "too_thin"
         return GradeOutcome(
             grade=grade,
             family=optimum.family,
             continuous_diameter_m=optimum.diameter_m,
             candidates=tuple(candidates),
-            outcome=_outcome_of(candidates, best, optimum),
+            outcome=outcome,
             best=best,
             verdict=optimum.verdict,
         )
-
-
-def _outcome_of(
-    candidates: Sequence[Candidate], best: Candidate | None, optimum: ContinuousOptimum
-) -> Outcome:
-    """Return what became of a grade, the best of its sizes that hold among them."""
-    if best is not None and best.rejected_by is None:
-        return "fits"
-    if any(candidate.verification.holds for candidate in candidates):
-        return "rejected"
-    if math.isfinite(optimum.diameter_m):
-        return "too_thin"
-    proved = optimum.verdict is not None and optimum.verdict.is_proved
-    return "no_finite_cable" if proved else "open"
 
 
 def _usable(
