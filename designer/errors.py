@@ -8,6 +8,7 @@
     ├── OutputError         the results cannot be written where asked (exit status 2)
     ├── NothingToExportError no cables or ropes serve the study (exit status 1)
     ├── MissingLibraryError the machine lacks what draws in space (exit status 2)
+    ├── MissingRingError    a part of ours was left out of this installation (exit status 2)
     ├── PluginError         code of a plugin fails at work (exit status 2)
     └── EffectError         an effect that a plugin brought in fails at work (exit status 2)
 """
@@ -107,6 +108,10 @@ class NothingToExportError(DesignerError):
 
 class MissingLibraryError(DesignerError):
     """A library of the operating system is missing; the message names its package."""
+
+
+class MissingRingError(DesignerError):
+    """A capability of ours was left out of this installation; the message names it."""
 
 
 class PluginError(DesignerError):

@@ -1,5 +1,7 @@
 """The plugin door: how grades, effects, commands, files and sections of a report come in.
 
+Our own rings, capabilities that sizing, selection and the report do not need, come in by it too.
+
 A plugin is a Python distribution with an entry point in the group ``designer.plugins``, whose
 module implements one of the hooks below, or several::
 
@@ -22,13 +24,14 @@ from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import EntryPoint, distributions
+from importlib.util import find_spec
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import pluggy
 
 import designer
-from designer.errors import PluginError, described, one_line
+from designer.errors import MissingRingError, PluginError, described, one_line
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
@@ -39,9 +42,38 @@ if TYPE_CHECKING:
 
 PROJECT = "designer"
 ENTRY_POINT_GROUP = "designer.plugins"
-OWN_ENTRIES = (
-    EntryPoint("builtin", "designer.grades.builtin", ENTRY_POINT_GROUP),
-    EntryPoint("builtin-effects", "designer.effects.builtin", ENTRY_POINT_GROUP),
+
+
+@dataclass(frozen=True, slots=True)
+class Ring:
+    """A capability that sizing, selection and the report do not need."""
+
+    name: str
+    rooms: tuple[str, ...]  #: folders of `designer/`; the last has its hooks
+    commands: tuple[str, ...]  #: that it brings
+
+    @property
+    def is_installed(self) -> bool:
+        """Whether a distribution has it."""
+        specs = [find_spec(f"designer.{room}") for room in self.rooms]
+        return all(spec is not None and spec.origin is not None for spec in specs)
+
+
+RINGS = (
+    Ring("reference", ("reference",), ("verify",)),
+    Ring("exchange", ("foreign", "exports"), ("import", "export")),
+    Ring("batch", ("sweeps", "optimum"), ("sweep", "optimise")),
+    Ring("drafting", ("drafting",), ("catalog new",)),
+    Ring("window", ("explore",), ("explore",)),
+)
+"""What no room of the core imports, and no other ring but where `tests/test_house.py` says so."""
+OWN_ENTRIES = tuple(
+    EntryPoint(name, f"designer.{module}", ENTRY_POINT_GROUP)
+    for name, module in (
+        ("builtin", "grades.builtin"),
+        ("builtin-effects", "effects.builtin"),
+        *((ring.name, ring.rooms[-1]) for ring in RINGS),
+    )
 )
 """Our own plugins, as `pyproject.toml` declares them.
 
@@ -77,6 +109,12 @@ def register_commands() -> Sequence[Callable[..., object]]:
 
     One that returns False has answered no.
     """
+    raise NotImplementedError  # only the signature counts
+
+
+@hookspec
+def register_catalog_commands() -> Sequence[Callable[..., object]]:
+    """Return a list of functions as before, each a command below `designer catalog`."""
     raise NotImplementedError  # only the signature counts
 
 
@@ -142,8 +180,11 @@ class Offer:
 def find_plugins(with_plugins: bool = True) -> Plugins:
     """Load the entry points, ours first; without plugins, ours alone."""
     problems: list[str] = []
+    absent = {ring.name for ring in RINGS if not ring.is_installed}
     plugins = {
-        entry.name: Plugin(entry.name, OWN_SOURCE, _hooks_of(entry)) for entry in OWN_ENTRIES
+        entry.name: Plugin(entry.name, OWN_SOURCE, _hooks_of(entry))
+        for entry in OWN_ENTRIES
+        if entry.name not in absent
     }
     for entry, source in _installed(problems) if with_plugins else ():
         name = one_line(entry.name)
@@ -183,7 +224,8 @@ def registered(
 ) -> tuple[dict[str, tuple[Value, str]], list[str]]:
     """Return what the plugins give in answer to a hook, by name, each with its plugin's label.
 
-    What is not of the class ``kind``, or has a name that is ``taken``, is left out with a line.
+    The label of our own is empty. What is not of the class ``kind``, or has a name that is
+    ``taken``, is left out with a line.
     """
     offers, problems = call_hook(plugins, hook)
     items: dict[str, tuple[Value, str]] = {}
@@ -195,24 +237,30 @@ def registered(
             elif (name := name_of(item)) in taken or name in items:
                 problem = f"{name!r}, which is there already"
             else:
-                items[name] = item, offer.label
+                items[name] = item, "" if offer.name in OWN_NAMES else offer.label
             if problem:
                 problems.append(f"{offer.label}: {hook}() gave {one_line(problem)}: left out")
     return items, problems
 
 
 def command_name(function: Any) -> str:
-    """Return a function's name with hyphens, as commands and sections have it."""
-    return str(function.__name__).replace("_", "-")
+    """Return a function's name with hyphens, as commands and sections have it.
+
+    A name that Python keeps for itself ends in one more, such as ``import_``.
+    """
+    return str(function.__name__).removesuffix("_").replace("_", "-")
 
 
 @contextmanager
 def named(label: str, failure: str, *passed: type[BaseException]) -> Iterator[None]:
-    """Make whatever goes wrong in a plugin a `PluginError`, except errors that are ``passed``."""
+    """Make whatever goes wrong in a plugin a `PluginError`, except errors that are ``passed``.
+
+    Without a label it is ours, and stays as it is.
+    """
     try:
         yield
     except BaseException as error:  # it may also exit
-        if isinstance(error, (KeyboardInterrupt, *passed)):
+        if not label or isinstance(error, (KeyboardInterrupt, *passed)):
             raise
         raise PluginError(f"{label} {failure}: {described(error)}") from error
 
@@ -231,6 +279,23 @@ def attempt(
     except PluginError as error:
         problems.append(f"{error}: left out")
         return None
+
+
+def require_ring(command: str) -> None:
+    """Refuse a command whose ring a distribution left out; says which brings it.
+
+    Raises
+    ------
+    MissingRingError
+        If it is of a ring of ours that is not installed.
+    """
+    for ring in RINGS:
+        if command in ring.commands and not ring.is_installed:
+            folders = ", ".join(f"designer/{room}" for room in ring.rooms)
+            raise MissingRingError(
+                f"designer {command}: comes with the ring '{ring.name}' ({folders}), "
+                "which is not installed here"
+            )
 
 
 def any_installed() -> bool:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
+
+NOT_STATED = "not stated"
 
 
 def nearest_name(text: str, names: Iterable[str]) -> str | None:
@@ -53,4 +56,23 @@ def _decimal(values: FloatArray) -> str:
 
 def kilograms(mass_kg: float) -> str:
     """Return a mass as plain text with four digits, such as ``21250 kg``."""
-    return f"{float(f'{mass_kg:.3e}'):.10g} kg"
+    return f"{digits(mass_kg)} kg"
+
+
+def digits(value: float, count: int = 4) -> str:
+    """Return a number with ``count`` significant digits at most, without exponent or ``-0``."""
+    if not math.isfinite(value):
+        return f"{value}"
+    return np.format_float_positional(float(f"{value:.{count - 1}e}") + 0.0, trim="-")
+
+
+def vector(values: Iterable[float], count: int = 4) -> str:
+    """Return numbers such as ``(0, 34, 20)``; what is rounding beside the largest is zero."""
+    row = np.array([*values], dtype=np.float64)
+    least = 1e-6 * float(np.abs(row).max(initial=0.0))
+    return f"({', '.join(digits(x if abs(x) > least else 0.0, count) for x in row.tolist())})"
+
+
+def stated(*texts: str) -> str:
+    """Join what a source states; catalogue files say "not stated" where it does not."""
+    return ", ".join(text for text in texts if text not in ("", NOT_STATED)) or NOT_STATED

@@ -31,7 +31,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from designer.analysis.sensitivities import payload_scaled
+from designer.analysis.sensitivity import payload_scaled
 from designer.arrays import FloatArray
 from designer.documents.plain import Json, record
 from designer.effects.design import AsBuilt

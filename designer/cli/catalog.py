@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from designer.cli.catalog_new import catalog_new
 from designer.cli.options import (
     WRONG_INPUT,
     AsJson,
-    HelpedCommands,
+    HookedCommands,
     NoPlugins,
     argument,
     quantity_of,
@@ -32,8 +31,17 @@ if TYPE_CHECKING:
 
 
 _LONGEST_NAME = 60
+
+
+class CatalogCommands(HookedCommands):
+    """The commands below `designer catalog`."""
+
+    hook = "register_catalog_commands"
+    order = ("list", "show", "check", "new", "new-plugin")
+
+
 catalog = typer.Typer(
-    cls=HelpedCommands, help="Look at the rope grades that are known.", no_args_is_help=True
+    cls=CatalogCommands, help="Look at the rope grades that are known.", no_args_is_help=True
 )
 
 
@@ -66,10 +74,12 @@ def catalog_list(
     Example:  designer catalog list --construction 7x19 --diameter 6mm
     """
     from designer.cli.tables import print_grades
-    from designer.grades.listing import Wanted, listed, split_nominal
+    from designer.grades.listing import GradeFilter, listed, split_nominal
 
     catalogue = _loaded(no_plugins)
-    criteria = Wanted(construction, _material(material, catalogue), maker, _diameter_m(diameter))
+    criteria = GradeFilter(
+        construction, _material(material, catalogue), maker, _diameter_m(diameter)
+    )
     products, computed = split_nominal(criteria.among(catalogue.grades))
     listed_grades, further = (computed, products) if nominal else (products, computed)
     if as_json:
@@ -159,9 +169,6 @@ def catalog_check(
     typer.echo(summary(catalogue) + ("" if catalogue.problems else ": no fault found"))
     if catalogue.problems:
         raise typer.Exit(WRONG_INPUT)
-
-
-catalog.command("new")(catalog_new)
 
 
 @catalog.command("new-plugin")

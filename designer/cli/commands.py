@@ -10,9 +10,7 @@ import gc
 import shlex
 import sys
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
-from types import FunctionType
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -20,16 +18,13 @@ import typer
 from designer import __version__
 from designer.cli.catalog import catalog
 from designer.cli.compare import compare
-from designer.cli.export import export
-from designer.cli.import_robot import import_robot
 from designer.cli.lengths import lengths, pose
-from designer.cli.optimise import optimise
 from designer.cli.options import (
     INTERRUPTED,
     NEGATIVE_ANSWER,
     WRONG_INPUT,
     Config,
-    HelpedCommands,
+    HookedCommands,
     NoPlugins,
     Template,
     argument,
@@ -41,12 +36,9 @@ from designer.cli.options import (
 )
 from designer.cli.plan import write_plan
 from designer.cli.schema import schema, write_with_schema
-from designer.cli.sweep import sweep
-from designer.cli.verify import verify
 from designer.errors import (
     DesignerError,
     InputError,
-    MissingLibraryError,
     OutputError,
     described,
     visible,
@@ -58,44 +50,19 @@ if TYPE_CHECKING:
     from designer.diagnosis.result import Diagnosis
 
 
-class Commands(HelpedCommands):
+class Commands(HookedCommands):
     """All commands; typer itself would give a closed pipe the status of a negative answer."""
 
-    _has_those_of_plugins = False
+    hook = "register_commands"
+    order = (
+        "lengths", "pose", "compare", "sweep", "optimise", "import", "export", "verify", "schema",
+        "report", "size", "diagnose", "explore", "init", "catalog",
+    )  # fmt: skip
 
     def make_context(self, *arguments: Any, **named: Any) -> Any:
         """Read the arguments; those that ask for help are answered here."""
         with readable_output():
             return super().make_context(*arguments, **named)
-
-    def get_command(self, ctx: Any, name: str) -> Any:
-        """Return a command; plugins are looked at where none of ours has the name."""
-        if name not in self.commands:
-            self._add_those_of_plugins()
-        return super().get_command(ctx, name)
-
-    def list_commands(self, ctx: Any) -> Any:
-        """Return the names of all commands, ours first."""
-        self._add_those_of_plugins()
-        return super().list_commands(ctx)
-
-    def _add_those_of_plugins(self) -> None:
-        from designer.cli.terminal import print_left_out
-        from designer.plugins import any_installed, attempt, command_name, find_plugins, registered
-
-        if self._has_those_of_plugins or not any_installed():
-            return
-        self._has_those_of_plugins = True
-        plugins = find_plugins()
-        functions, problems = registered(
-            plugins, "register_commands", FunctionType, command_name, self.commands
-        )
-        for name, (function, label) in functions.items():
-            made = partial(_plugin_command, name, function, label)
-            command = attempt(made, label, f"has an unusable command {name}", problems)
-            if command is not None:
-                self.commands[name] = command
-        print_left_out([*plugins.problems, *problems])
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command that is asked for; one that returns False has answered no."""
@@ -112,24 +79,6 @@ class Commands(HelpedCommands):
             return answer
 
 
-def _plugin_command(name: str, function: FunctionType, label: str) -> Any:
-    """Return a function of a plugin as a command; whatever goes wrong in it names the plugin."""
-    from designer.plugins import named
-
-    alone = typer.Typer(add_completion=False, rich_markup_mode="rich")
-    alone.command(name)(function)
-    command: Any = typer.main.get_command(alone)
-    action = command.callback
-    answers = (DesignerError, typer.Exit, typer.Abort, typer.BadParameter, SystemExit)
-
-    def run(*arguments: Any, **options: Any) -> Any:
-        with named(label, f"fails in the command {name}", *answers, BrokenPipeError):
-            return action(*arguments, **options)
-
-    command.callback = run
-    return command
-
-
 app = typer.Typer(
     cls=Commands,
     help="Size the cables of large cable-driven parallel robots, and report it.",
@@ -142,11 +91,6 @@ app.add_typer(catalog, name="catalog")
 app.command()(lengths)
 app.command()(pose)
 app.command()(compare)
-app.command()(sweep)
-app.command()(optimise)
-app.command("import")(import_robot)
-app.command()(export)
-app.command()(verify)
 app.command()(schema)
 
 
@@ -387,42 +331,6 @@ def diagnose(
     print_left_out(result.study.known_effects.problems[n_known:])
     print_diagnosis(result, folder, written)
     return result.is_positive
-
-
-@app.command()
-def explore(
-    config: Annotated[Path | None, argument("[CONFIG]", "The study, a YAML file.")] = None,
-    screenshot: Annotated[
-        Path | None,
-        option(
-            "--screenshot",
-            metavar="FILE",
-            text="Save a picture of the window once everything is answered, and close it.",
-        ),
-    ] = None,
-    no_plugins: NoPlugins = False,
-) -> None:
-    """Open the desktop window to find a design in.
-
-    Needs the extra `desktop`:  pip install 'cdpr-designer[desktop]'
-
-    Example:  designer explore my-crane.yaml
-
-    Exit status 0: the window was closed. 2: no window can be opened, or the file cannot be read.
-    """
-    from designer.explore.desktop.display import begin_probe, why_no_library, why_no_window
-
-    missing = why_no_library()
-    if missing:
-        raise MissingLibraryError(missing)
-    if config is not None and not config.is_file():
-        raise InputError.at(config, "there is no such file", "a study")
-    missing = why_no_window(begin_probe())
-    if missing:
-        raise MissingLibraryError(missing)
-    from designer.explore.desktop.app import run
-
-    raise typer.Exit(run(config, screenshot, with_plugins=not no_plugins))
 
 
 @app.command()

@@ -5,14 +5,16 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from copy import copy
+from functools import partial
 from pathlib import Path
+from types import FunctionType
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.markup import escape
 from typer.core import TyperGroup
 
-from designer.errors import InputError
+from designer.errors import DesignerError, InputError
 from designer.io.process import is_terminal
 from designer.units import Dimension, QuantityError, read_quantity
 
@@ -28,11 +30,58 @@ INTERRUPTED = 130
 """As the shell gives it after Ctrl-C."""
 
 
-class HelpedCommands(TyperGroup):
-    """Commands whose help is as wide as the terminal, and has no markup."""
+class HookedCommands(TyperGroup):
+    """Commands of the core, and those that a hook gives: of our rings, and of plugins.
+
+    Their help is as wide as the terminal, and has no markup.
+    """
+
+    hook: str
+    order: tuple[str, ...]  #: in which they are listed; those of plugins follow
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        self._core, self._levels = tuple(self.commands), set[bool]()
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Return the names of all commands."""
+        from designer.plugins import any_installed
+
+        self._add(with_plugins=any_installed())
+        rank = {name: place for place, name in enumerate(self.order)}
+        return sorted(self.commands, key=lambda name: rank.get(name, len(rank)))
+
+    def _add(self, *, with_plugins: bool) -> None:
+        """Add the commands of our rings, or of plugins as well, unless they are there."""
+        from designer.cli.terminal import print_left_out
+        from designer.plugins import attempt, command_name, find_plugins, registered
+
+        if with_plugins in self._levels:
+            return
+        self._levels.add(with_plugins)
+        plugins = find_plugins(with_plugins)
+        functions, problems = registered(plugins, self.hook, FunctionType, command_name, self._core)
+        for name, (function, label) in functions.items():
+            if name not in self.commands:
+                made = partial(_hooked_command, name, function, label)
+                command = attempt(made, label, f"has an unusable command {name}", problems)
+                if command is not None:
+                    self.commands[name] = command
+        print_left_out([*plugins.problems, *problems])
 
     def get_command(self, ctx: Any, name: str) -> Any:
-        """Return a command; rich would keep the line breaks of its docstring."""
+        """Return a command; plugins are looked at where none of ours has the name.
+
+        Its help is joined to paragraphs: rich would keep the line breaks of its docstring.
+        """
+        from designer.plugins import any_installed, require_ring
+
+        if name not in self.commands:
+            self._add(with_plugins=False)
+        if name not in self.commands and any_installed():
+            self._add(with_plugins=True)
+        if name not in self.commands:
+            require_ring(f"catalog {name}" if "catalog" in self.hook else name)
         command = copy(super().get_command(ctx, name))
         if command is not None and command.help:
             paragraphs = escape(command.help).split("\n\n")
@@ -41,6 +90,24 @@ class HelpedCommands(TyperGroup):
             )
             command.help = "\n\n".join(joined)
         return command
+
+
+def _hooked_command(name: str, function: FunctionType, label: str) -> Any:
+    """Return a function as a command; whatever goes wrong in a plugin's names the plugin."""
+    from designer.plugins import named
+
+    single = typer.Typer(add_completion=False, rich_markup_mode="rich")
+    single.command(name)(function)
+    command: Any = typer.main.get_command(single)
+    action = command.callback
+    answers = (DesignerError, typer.Exit, typer.Abort, typer.BadParameter, SystemExit)
+
+    def run(*arguments: Any, **options: Any) -> Any:
+        with named(label, f"fails in the command {name}", *answers, BrokenPipeError):
+            return action(*arguments, **options)
+
+    command.callback = run
+    return command
 
 
 def can_ask() -> bool:

@@ -15,7 +15,7 @@ from designer.grades.grade import TYPICAL_LOAD_FRACTION, Grade
 from designer.grades.listing import facts
 from designer.model.load_case import STATIC
 from designer.model.verdict import Answer
-from designer.spelling import in_runs, kilograms, position
+from designer.spelling import in_runs, kilograms, position, stated
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
@@ -169,9 +169,9 @@ def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:
         yield "", escape(omissions)
     for condition in terms.subject_to:
         yield "  subject to", escape(f"{condition.what}. {condition.sentences}")
-    for adrift in analysis.findings.adrift if analysis.answer is Answer.NO else ():
-        words = f"straight cables cannot hold the platform in {adrift.share:.1%} of the poses"
-        yield f"  '{escape(adrift.loaded.case.name)}'", bad(f"{words}, whatever the rope")
+    for loss in analysis.findings.equilibrium_losses if analysis.answer is Answer.NO else ():
+        words = f"straight cables cannot hold the platform in {loss.share:.1%} of the poses"
+        yield f"  '{escape(loss.loaded.case.name)}'", bad(f"{words}, whatever the rope")
     for requirement in analysis.unmet:
         labels = [] if requirement.cable is None else [f"cable {requirement.cable}"]
         if requirement.load_case != "all":
@@ -380,8 +380,8 @@ def print_grades(grades: Sequence[Grade]) -> None:
                 loads_kN = [1e-3 * size.minimum_breaking_load_N for size in grade.sizes]
                 cells = (
                     f"  {grade.id}",
-                    _known(grade.construction, grade.core),
-                    _known(grade.material or "", grade.finish.removeprefix("stainless, ")),
+                    stated(grade.construction, grade.core),
+                    stated(grade.material or "", grade.finish.removeprefix("stainless, ")),
                     f"{len(grade.sizes)}" + (f" ({n_doubtful}?)" if n_doubtful else ""),
                     _range(1e3 * grade.sizes[0].diameter_m, 1e3 * grade.thickest.diameter_m),
                     _range(min(loads_kN), max(loads_kN)),
@@ -394,11 +394,6 @@ def print_grades(grades: Sequence[Grade]) -> None:
         "trust: A maker's or standard's table, B seller's transcript, C third hand; (n?) doubtful "
         "sizes; for document and address: designer catalog show GRADE"
     )
-
-
-def _known(*texts: str) -> str:
-    """Join what a source states; catalogue files say "not stated" where it does not."""
-    return ", ".join(text for text in texts if text not in ("", "not stated")) or "not stated"
 
 
 def _range(start: float, last: float) -> str:

@@ -13,6 +13,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray, VerdictArray
 from designer.model.load_case import Loaded
 from designer.model.space import named_place
+from designer.spelling import digits
 
 
 class State(StrEnum):
@@ -74,7 +75,7 @@ class Requirement:
     def words(self) -> str:
         """State and figures in a line, such as ``fails: demand 28, capacity 25.2``."""
         figures = [
-            f"{name} {value:.4g} {self.unit}".rstrip()
+            f"{name} {digits(value)} {self.unit}".rstrip()
             for name, value in (("demand", self.demand), ("capacity", self.capacity))
             if math.isfinite(value)
         ]

@@ -101,6 +101,16 @@ def newtons_alike(*values: float) -> tuple[str, ...]:
     return tuple(_scaled(value, ((unit, scale, math.inf),)) for value in values)
 
 
+def alike(values_N: Iterable[float], digits: int = 4) -> Callable[..., tuple[str, ...]]:
+    """Return what writes forces of one column: in one unit, the largest with so many digits."""
+    largest_N = max((abs(value) for value in values_N if math.isfinite(value)), default=0.0)
+    unit, scale = next((name, scale) for name, scale, end in _FORCES if largest_N < end)
+    places = max(digits - 1 - math.floor(math.log10(max(largest_N / scale, 1.0))), 0)
+    return lambda *values: tuple(
+        _with_unit(fixed(float(value) / scale, places), unit) for value in values
+    )
+
+
 def force_unit(typical_N: float) -> tuple[str, float]:
     """Return the unit for a column of forces, and how many newtons it has."""
     return ("kN", 1e3) if typical_N >= 1e3 else ("N", 1.0)
@@ -199,9 +209,19 @@ def plural(amount: int, noun: str) -> str:
 
 
 def printed(text: str) -> str:
-    """Return a plain text as it is printed: ``d²`` for ``d^2``, and true minus signs."""
-    raised = re.sub(r"\^(\d)", lambda found: found[1].translate(_SUPERSCRIPTS), text)
+    """Return a plain text as it is printed: ``d²`` for ``d^2``, true minus signs and powers."""
+    text = re.sub(r"(?<!\w)(\d+(?:\.\d+)?)e([-+]?\d{1,3})\b", _power, text)
+    raised = re.sub(
+        r"\^(\d)|(?<=\bmm)(2)\b",
+        lambda found: (found[1] or found[2]).translate(_SUPERSCRIPTS),
+        text,
+    )
     return re.sub(r"(?<=[( ])-(?=\d)", "−", raised)
+
+
+def _power(found: re.Match[str]) -> str:
+    power = str(int(found[2])).translate(_SUPERSCRIPTS)
+    return f"{found[1]}{_THIN}×{_THIN}10{power}"
 
 
 def shorter(text: str) -> str:

@@ -7,23 +7,27 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable
 from datetime import datetime
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from markupsafe import Markup
 
+from designer import spelling
 from designer.analysis.comparison import ComparisonLine
-from designer.analysis.edge import EdgeProfile
-from designer.analysis.maps import Served, WorkspaceMaps
+from designer.analysis.maps import CoverageCurve, EdgeProfile, WorkspaceMaps
 from designer.arrays import FloatArray
+from designer.grades.grade import Grade
 from designer.model.region import Region
 from designer.model.space import Orientations
-from designer.model.verdict import State
+from designer.model.verdict import Requirement, State
 from designer.report import format as fmt
 from designer.report.figures.colours import DIAMETER, RATIO
 from designer.selection.assignment import Assignment
+from designer.selection.result import CoveredSize
 from designer.study import Study
 
 if TYPE_CHECKING:
@@ -41,6 +45,8 @@ INPUT_NAMES: dict[str, str] = {
 }
 LITTLE = 0.02
 """A share by which sag may change a tension without a figure of that being worth its place."""
+_COLUMN = 55
+"""Characters of a line of a column on page 1."""
 _NEAR = 0.005
 """A distance from the edge, over that of the region, that is none."""
 _LIKELY, _UNLIKELY = 0.99, 0.5
@@ -109,9 +115,7 @@ def angle(angle_rad: float) -> str:
 
 def short_position(place: FloatArray) -> str:
     """Return a position such as ``(12.5, 3, −1)``, as a cell of a table has room for."""
-    return f"({', '.join(f'{round(float(value), 2) + 0.0:.4g}' for value in place[:3])})".replace(
-        "-", "\N{MINUS SIGN}"
-    )
+    return fmt.printed(spelling.vector(np.round(place[:3], 2)))
 
 
 STATES = {State.HOLDS: "holds", State.OPEN: "not known", State.FAILS: "does not hold"}
@@ -132,6 +136,13 @@ def with_unit(value: float, unit: str) -> str:
     if unit == "m":
         return fmt.millimetres(value) if abs(value) < 1.0 else fmt.metres(value)
     return f"{fmt.trimmed(value)}\u00a0{unit}".rstrip()
+
+
+def of_requirement(value: float, requirement: Requirement) -> str:
+    """Return a demand or a capacity of a requirement with its unit; sag as a share of the chord."""
+    if requirement.id == "sag" and math.isfinite(value):
+        return fmt.percent(value)
+    return with_unit(value, requirement.unit)
 
 
 def described_orientations(orientations: Orientations) -> str:
@@ -165,9 +176,16 @@ def orientation_words(study: Study) -> tuple[str, str] | None:
 
 
 def lengths(length_m: FloatArray) -> str:
-    """Return lengths as the fabrication data give them; one where all are equal."""
-    each = [fmt.fixed(float(length), 2) for length in length_m]
-    return f"{fmt.listing(each if len({*each}) > 1 else each[:1])}\u00a0m"
+    """Return lengths as the fabrication data give them, alike ones such as ``6 × 338.20 m``."""
+    counts = Counter(fmt.fixed(float(length), 2) for length in length_m)
+    each = [f"{count}\u00a0×\u00a0{text}" if count > 1 else text for text, count in counts.items()]
+    return f"{fmt.listing(each)}\u00a0m"
+
+
+def construction(grade: Grade) -> str:
+    """Return construction, core and finish of a grade, as far as its source states them."""
+    core = "" if grade.core == spelling.NOT_STATED else f"core {grade.core}"
+    return spelling.stated(grade.construction, core, grade.finish)
 
 
 def assigned_ropes(assignment: Assignment) -> str:
@@ -197,6 +215,26 @@ def length_of_statements(html: str) -> int:
     """Return how many characters the statements have, without their titles."""
     texts = (re.sub(r"<strong>.*?</strong>", "", part) for part in each_statement(html))
     return sum(len(Markup(text).striptags()) for text in texts)
+
+
+def runs_that_serve_none(sizes: Iterable[CoveredSize]) -> list[list[CoveredSize]]:
+    """Return sizes one by one, but three and more in a row that serve nothing together."""
+    runs: list[list[CoveredSize]] = []
+    for serves_some, run in groupby(sizes, key=lambda size: size.fraction > 0.0):
+        same = list(run)
+        runs += [same] if not serves_some and len(same) > 2 else [[size] for size in same]
+    return runs
+
+
+def two_columns(statements: Iterable[str]) -> tuple[list[str], list[str]]:
+    """Return statements in two columns: each goes where fewer lines stand, in their order."""
+    columns: tuple[list[str], list[str]] = [], []
+    lines = [0, 0]
+    for text in statements:
+        shorter = int(lines[1] < lines[0])
+        columns[shorter].append(text)
+        lines[shorter] += 1 + len(Markup(text).striptags()) // _COLUMN
+    return columns
 
 
 _BY_PATH: tuple[tuple[str, Callable[[float], str]], ...] = (
@@ -353,7 +391,7 @@ def ends_of_holding(profile: EdgeProfile) -> tuple[float | None, float | None]:
     return last, straight
 
 
-def diameter_of_nine_tenths_m(served: Served) -> float | None:
+def diameter_of_nine_tenths_m(served: CoverageCurve) -> float | None:
     """Return the diameter that serves nine poses of ten [m]; None where none does."""
     most = np.flatnonzero(served.share >= 0.9)
     return float(served.diameter_m[most[0]]) if len(most) else None

@@ -21,7 +21,7 @@ from designer.selection.candidate import MEANINGS, Candidate, Standing
 from designer.selection.criteria import Criterion, Evaluation, evaluate, loads_of, strength_of
 from designer.selection.reeving import drum_of, sheave_ratio_of, spooling_of
 from designer.selection.verify import Verification
-from designer.spelling import position
+from designer.spelling import digits, position
 from designer.study import Objective, Selection
 
 Search = Callable[[Sequence[Candidate]], Sequence[Verification]]
@@ -166,7 +166,7 @@ def standing_of(
         )
     if not verification.holds:
         least = "" if candidate.sampled.is_complete else "at least "
-        percent = f"{least}{100.0 * verification.utilisation:.4g} %"
+        percent = f"{least}{digits(100.0 * verification.utilisation)} %"
         return "too_thin", f"meets {percent} of its allowable tension at {worst}"
     failed = rejection_words(candidate)
     if failed is not None and candidate is not best:

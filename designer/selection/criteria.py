@@ -476,7 +476,7 @@ def _worsened(
     again: Effort,
 ) -> tuple[Loaded, FloatArray]:
     """Worsen wind and inertia force and search the pose again, in alternation."""
-    if not loaded.is_turned:
+    if not loaded.is_direction_searched:
         return loaded, extreme.place
     for _ in range(_MAX_ITERATIONS):
         place = extreme.place

@@ -51,6 +51,7 @@ from designer.selection.refutation import (
     singleton_block,
     verify_groups,
 )
+from designer.spelling import digits
 from designer.study import CableGroup, Selection
 
 MOST_PROPOSALS = 100
@@ -147,7 +148,7 @@ class GroupChoice:
                 return f"Stopped after {count} proposals, none of which holds."
             return (
                 f"Stopped after {count} proposals: no assignment of {of} that holds has less than "
-                f"{self.bound:.4g} {self.unit}, so one may be {kind} by up to {self.gap:.2%}."
+                f"{digits(self.bound)} {self.unit}, so one may be {kind} by up to {self.gap:.2%}."
             )
         means = "by poses that the solver showed they cannot hold"
         if self.by_weight:

@@ -14,6 +14,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, frozen_array
 from designer.model.robot import Poses, Robot
+from designer.spelling import vector
 from designer.statics.geometry import cable_geometry, density_matrix, structure_matrix
 from designer.statics.pulleys import straight_run
 
@@ -49,8 +50,8 @@ class FreeMotion:
         """What the platform can do, for a sentence."""
         names = ("x axis", "y axis", "z axis")
         along = np.flatnonzero(np.abs(self.axis) > 1.0 - _SAME)
-        line = ", ".join(f"{x:.3g}" for x in self.axis + 0.0)
-        axis = f"the {names[along[0]]}" if len(along) else f"the direction ({line})"
+        line = vector(self.axis, 3)
+        axis = f"the {names[along[0]]}" if len(along) else f"the direction {line}"
         return {
             "turn": f"turns freely about {axis}",
             "move": f"moves freely along {axis}",

@@ -34,6 +34,7 @@ from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict, hanging_cables
 from designer.physics import catenary
+from designer.spelling import vector
 from designer.statics.geometry import (
     CableGeometry,
     cable_geometry,
@@ -173,7 +174,7 @@ class Statics(checked.Shown):
         wrench[self.robot.balance_rows] = self.wrench
         parts = np.round(wrench.reshape(2, 3) @ self.robot.upright, 2) + 0.0
         motions = [
-            f"{verb} ({', '.join(f'{x:g}' for x in part)})"
+            f"{verb} {vector(part)}"
             for verb, part in zip(("push along", "turn it about"), parts, strict=True)
             if np.linalg.norm(part) > _MARGINAL
         ]

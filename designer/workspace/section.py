@@ -94,16 +94,16 @@ def thinnest(robot: Robot, family_at: FamilyAt) -> Generator[Material, Worst, fl
 
 def in_lockstep(
     searches: Sequence[Generator[Yielded, Sent, Returned]],
-    answered: Callable[[Mapping[int, Yielded]], Mapping[int, Sent]],
+    answer_all: Callable[[Mapping[int, Yielded]], Mapping[int, Sent]],
 ) -> list[Returned]:
     """Return the results of searches that yield questions and are sent the answers.
 
-    ``answered`` answers, at once, all searches that have not ended, by their numbers.
+    ``answer_all`` answers, at once, all searches that have not ended, by their numbers.
     """
     results: dict[int, Returned] = {}
     questions = {k: next(search) for k, search in enumerate(searches)}
     while questions:
-        answers, questions = answered(questions), {}
+        answers, questions = answer_all(questions), {}
         for k, answer in answers.items():
             try:
                 questions[k] = searches[k].send(answer)

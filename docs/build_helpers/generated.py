@@ -151,8 +151,8 @@ def _command(command, path):
     ]
     if rows:
         yield _table(rows, ("argument", "meaning"))
-    for name, below in getattr(command, "commands", {}).items():
-        yield from _command(below, f"{path} {name}")
+    for name in command.list_commands(None) if hasattr(command, "commands") else ():
+        yield from _command(command.commands[name], f"{path} {name}")
 
 
 def _help(text):

@@ -16,12 +16,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from typer.testing import CliRunner, Result
 
-from designer.cli import catalog_new, terminal
+from designer.cli import terminal
 from designer.cli.commands import app
+from designer.drafting import command, pdf_table
+from designer.drafting.maker_table import known_unit, read_maker_table
 from designer.errors import InputError
 from designer.grades.registry import load_catalogue, read_grade
-from designer.io import pdf_table
-from designer.io.maker_table import known_unit, read_maker_table
 
 GERMAN = """Acme Seile; Ausgabe 2024;;;
 Nenngröße;Ø [mm];Mindestbruchkraft (kN);Gewicht kg/100m;Preis
@@ -337,7 +337,7 @@ def test_what_is_in_doubt_is_asked_for_by_options() -> None:
 
 
 def test_what_is_in_doubt_is_asked_for_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(catalog_new, "can_ask", lambda: True)
+    monkeypatch.setattr(command, "can_ask", lambda: True)
     answers = [
         *("2", "mm", "tons", "kN", "kg/m"),  # which tons, is asked again
         *("", "Acme", "Quarry", "6x36", "IWRC", "bright", "steel", "", "", "", "", "", "", ""),

@@ -9,7 +9,7 @@ import pytest
 from figures_cases import STEEL, THREE, maps_of, solved
 from report_parts import caption
 
-from designer.analysis.layers import chosen_sizes, layers_of
+from designer.analysis.maps import chosen_sizes, layers_of
 from designer.arrays import FloatArray
 from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.robot import Poses

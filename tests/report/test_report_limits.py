@@ -139,7 +139,7 @@ def test_modes_stand_in_file_and_report(found: Analysis) -> None:
     governing = found.governing
     assert governing is not None
     density = governing.case.loaded.moving_density_kg_per_m
-    at = governing.alone
+    at = governing.equilibrium
     modes = platform_modes(at, found.study.robot.platform, density)
     expected = np.array([mode.frequency_Hz for mode in modes])
     assert [row["frequency_Hz"] for row in result["modes"]] == pytest.approx(expected.tolist())

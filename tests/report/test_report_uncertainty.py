@@ -48,7 +48,7 @@ def shown(found: UncertaintyAnalysis | None, *, draws: bool = True, **more: Any)
     study = SimpleNamespace(uncertainty=more.get("asked"))
     assignment = SimpleNamespace(rope=more.get("chosen"))
     analysis: Any = SimpleNamespace(
-        uncertainty=found, study=study, findings=None, assignment=assignment, carries=None
+        uncertainty=found, study=study, findings=None, assignment=assignment, sensitivity=None
     )
     return section(Drawings(analysis, draws), "uncertainty")
 
@@ -136,10 +136,8 @@ def test_a_borrowed_modulus_alone_takes_a_paragraph(used: np.ndarray) -> None:
     whole = shown(found_of(0.9 + 0 * used, is_asked=False, checked=Checked(), **alone))
     assert whole is not None
     first, (how,) = statements(whole)["Borrowed modulus"], paragraphs(whole)
-    assert (
-        "90.0\u00a0% throughout: the rope is strong enough with 100\u00a0% probability"
-        in first.text
-    )
+    assert "90.0\u00a0% throughout, at most 100\u00a0% in every draw" in first.text
+    assert "This is no probability that the rope holds" in first.text
     assert first.tone == ""
     assert "not searched again" in how
 

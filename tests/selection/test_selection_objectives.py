@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from ropes import rope
 
-from designer.analysis.selection_json import selection_dict
+from designer.analysis.result_json import selection_dict
 from designer.arrays import frozen_array
 from designer.grades.grade import Grade, Units
 from designer.model.cable import Cable, Preference

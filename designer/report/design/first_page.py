@@ -241,7 +241,7 @@ def _advice(analysis: Analysis, findings: Findings) -> Context:
     pose = analysis.pose
     weight = _weight(analysis)
     return {
-        "other_grades": [] if findings.adrift else _other_grades(analysis),
+        "other_grades": [] if findings.equilibrium_losses else _other_grades(analysis),
         "pose_fails": pose is not None and not pose.sizing.statics.is_solved,
         "some_served": workspace is not None and workspace.sampled is not None,
         "lacks_strength": not analysis.assignment.is_found
@@ -250,7 +250,7 @@ def _advice(analysis: Analysis, findings: Findings) -> Context:
         "hangs_by_weight": weight is not None
         and not weight["is_held_straight"]
         and any(requirement.id == "sag" for requirement in analysis.unmet),
-        "adrift_cases": [adrift.loaded.case.name for adrift in findings.adrift],
+        "unbalanced_cases": [loss.loaded.case.name for loss in findings.equilibrium_losses],
         "is_layer": unserved is not None and _is_layer(analysis, unserved),
         "is_strip": unserved is not None and unserved.depth_m < _STRIP * unserved.inradius_m,
         "not_served": [] if workspace is None else _verdicts_not_served(analysis),
@@ -363,7 +363,7 @@ def _weight(analysis: Analysis) -> Context | None:
         "is_held_straight": True,
         "rope": rope.name,
         "tensions_N": (float(straight_N.max()), float(statics.largest_tension_N)),
-        "utilisations": (straight, float(rope.used(statics))),
+        "utilisations": (straight, float(rope.utilisation(statics))),
     }
 
 

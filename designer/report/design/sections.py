@@ -8,19 +8,18 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product, zip_longest
 from typing import TYPE_CHECKING, Any, SupportsFloat
 
 import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.carries import Carries
-from designer.analysis.fabrication import FabricatedCable, fabricated_cables
 from designer.analysis.governing import GoverningPose
+from designer.analysis.lengths import FabricatedCable, fabricated_cables
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.reactions import Reaction
-from designer.analysis.sensitivities import Sensitivities
+from designer.analysis.sensitivity import Sensitivities, SensitivityReport
 from designer.grades.grade import NOT_NAMED, TRUST_MEANING
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
 from designer.model.verdict import Verdict
@@ -92,10 +91,10 @@ def requirements(analysis: Analysis) -> Context:
     shown = {"requirements": by_title(analysis.requirements), "pose": pose}
     if pose is None:
         return shown
-    write = _alike(cable.exit_tension_N for cable in pose.cables)
+    write = fmt.alike((cable.exit_tension_N for cable in pose.cables), 5)
     return {
         **shown,
-        "governing_cable": pose.cables[int(pose.alone.cable_tension_N.argmax())].cable,
+        "governing_cable": pose.cables[int(pose.equilibrium.cable_tension_N.argmax())].cable,
         "tensions": [write(one.exit_tension_N, one.platform_tension_N) for one in pose.cables],
         "forces": _forces(pose),
     }
@@ -104,30 +103,20 @@ def requirements(analysis: Analysis) -> Context:
 def _forces(pose: GoverningPose) -> list[tuple[str, list[str]]]:
     """Return each force on the platform with its components, and their sum."""
     named = [(f"cable {one.cable}", one.pull_N) for one in pose.cables]
-    write = _alike(float(x) for _, force in (*named, *pose.loads) for x in force)
+    write = fmt.alike((float(x) for _, force in (*named, *pose.loads) for x in force), 5)
     rows = [(fmt.capital(name), [*write(*force)]) for name, force in (*named, *pose.loads)]
     return [*rows, ("Sum", [*write(*(pose.force_sum_N.round(6) + 0.0))])]
 
 
-def _alike(forces_N: Iterable[float]) -> Callable[..., tuple[str, ...]]:
-    """Return what writes forces in one unit, the largest of these with five digits."""
-    largest_N = max((abs(float(x)) for x in forces_N), default=0.0)
-    unit, scale = fmt.force_unit(largest_N)
-    places = max(4 - math.floor(math.log10(max(largest_N / scale, 1.0))), 0)
-    return lambda *values: tuple(
-        f"{fmt.fixed(float(x) / scale, places)}\u00a0{unit}" for x in values
-    )
-
-
 def sensitivities(analysis: Analysis) -> Mapping[str, object] | None:
     """What carries the result; None where no rope is chosen."""
-    carries, groups = analysis.carries, analysis.group_slopes
+    carries, groups = analysis.sensitivity, analysis.group_slopes
     if carries is not None:
         return _of_one_rope(carries)
     return _of_groups(groups) if groups else None
 
 
-def _of_one_rope(carries: Carries) -> Mapping[str, object]:
+def _of_one_rope(carries: SensitivityReport) -> Mapping[str, object]:
     slopes, utilisation = carries.sensitivities, carries.governing.utilisation
     platform = carries.governing.loaded.bare[0].platform
     values = {
@@ -151,7 +140,7 @@ def _of_one_rope(carries: Carries) -> Mapping[str, object]:
     }
 
 
-def slopes_of_moves(carries: Carries) -> list[Change]:
+def slopes_of_moves(carries: SensitivityReport) -> list[Change]:
     """Return what moves outward, and the exit points that matter most, with their slopes [1/m]."""
     moves = [("Sides of the region outward", carries.sensitivities.of("region").derivative)]
     slopes = carries.sensitivities.exit_points_per_m
@@ -162,7 +151,7 @@ def slopes_of_moves(carries: Carries) -> list[Change]:
     return [(name, slope) for name, slope in moves if math.isfinite(slope)]
 
 
-def shares_of_inputs(carries: Carries) -> list[Change]:
+def shares_of_inputs(carries: SensitivityReport) -> list[Change]:
     """Return the elasticity of each input over that of the strength, where it is known."""
     slopes = carries.sensitivities
     utilisation = -slopes.of("efficiency").derivative * slopes.of("efficiency").value

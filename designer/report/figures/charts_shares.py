@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from designer.analysis.maps import Served
+from designer.analysis.maps import CoverageCurve
 from designer.arrays import FloatArray
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _CHARACTER = 0.0098  # width of a character over the width of the figure
 
 
-def served_chart(served: Served) -> str:
+def served_chart(served: CoverageCurve) -> str:
     """Return the cumulative share of the workspace over the diameter, as SVG."""
     title = "Share of the workspace that a cable serves, over its diameter"
     with canvas.drawing():
@@ -47,7 +47,7 @@ def served_chart(served: Served) -> str:
         return canvas.svg(figure, "served", title)
 
 
-def _served_range(served: Served) -> tuple[float, float]:
+def _served_range(served: CoverageCurve) -> tuple[float, float]:
     """Horizontal limits [mm]; the last few poses near the boundary may need any diameter."""
     sag = served.needed_m, served.diameter_m, served.share
     straight = served.massless_needed_m, served.massless_diameter_m, served.massless_share
@@ -87,7 +87,7 @@ def _needed(axes: Axes, needed_m: float, label: str, colour: str, side: int) -> 
         canvas.note(axes, text, (1e3 * needed_m, 3.0), (3 * side, 0), rotation=90, **style)
 
 
-def _unserved(axes: Axes, served: Served) -> None:
+def _unserved(axes: Axes, served: CoverageCurve) -> None:
     if served.samples == 0:
         axes.text(0.5, 50.0, "every pose is left out", ha="center", va="center")
     if served.unserved == 0.0:

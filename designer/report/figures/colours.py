@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from designer.analysis.field import RegionField
-from designer.analysis.maps import Focus
+from designer.analysis.maps import Focus, RegionField
 from designer.arrays import FloatArray, IntArray
 from designer.report.figures import canvas, palette
 
@@ -66,7 +65,7 @@ class MapQuantity:
 DIAMETER = MapQuantity("diameter", "needed diameter", "mm", 1e3)
 TENSION = MapQuantity("tension", "largest tension", "kN", 1e-3)
 UTILISATION = MapQuantity("utilisation", "utilisation", "%", 100.0)
-RATIO = MapQuantity("ratio", "tension with sag over tension without", "", 1.0)
+RATIO = MapQuantity("ratio", "tension, with over without sag", "", 1.0)
 
 
 def tension_of(field: RegionField) -> MapQuantity:

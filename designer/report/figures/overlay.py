@@ -16,7 +16,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from designer.analysis.field import RegionField
+from designer.analysis.maps import RegionField
 from designer.arrays import FloatArray
 from designer.report import format as fmt
 from designer.report.figures import canvas, palette
@@ -41,6 +41,7 @@ _SIDES = (
     ((-1, -1), "right", "top"),
 )
 """Where a text may stand, right and up, and how it is aligned then."""
+_WIDE = 0.45  # of a picture: a text beyond it is broken in two
 _OVER_TEXT, _OVER_LINE, _BY_ORDER = 1000.0, 5.0, 0.02
 """What it costs to cover a text or a point of a line, and to take the next place of the list."""
 _EXTENTS: WeakKeyDictionary[Artist, Any] = WeakKeyDictionary()
@@ -247,6 +248,8 @@ def write_clear(
     """
     looks = {"bbox": canvas.paper(1.2, 0.8), "annotation_clip": False, **style}
     label = canvas.note(axes, text, (0, 0), (0, 0), **looks)
+    if label.get_window_extent().width > _WIDE * WIDTH_PX:  # would not fit on either side
+        label.set_text(text.replace(", ", ",\n", 1))
     occupied = _boxes(
         *(_extent(bar, bar.get_tightbbox) for bar in axes.figure.axes[1:]),
         *(_extent(x, x.get_window_extent) for x in axes.texts if x is not label),

@@ -11,9 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from designer.analysis.field import body_lines_m, cable_curves_m, chords_m, largest_sag
-from designer.analysis.layers import Layers, layers_of
-from designer.analysis.maps import WorkspaceMaps
+from designer.analysis.maps import (
+    Layers,
+    WorkspaceMaps,
+    body_lines_m,
+    cable_curves_m,
+    chords_m,
+    largest_sag,
+    layers_of,
+)
 from designer.arrays import FloatArray
 from designer.model.verdict import Verdict
 from designer.report import format as fmt

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.field import RegionField
-from designer.analysis.maps import WorkspaceMaps
-from designer.analysis.section import (
+from designer.analysis.maps import (
+    RegionField,
     SectionMap,
+    WorkspaceMaps,
     clearance_section,
     displacement_section,
     frequency_section,
@@ -55,7 +55,7 @@ def slice_panels(maps: WorkspaceMaps, quantities: Sequence[MapQuantity] = (TENSI
     flat = maps.flat_m(maps.section.position_m)
     map_mm = min(width_mm * _height_over_width(flat, corners), 56.0)
     with canvas.drawing():
-        figure = canvas.sheet(38.0 + (6.0 if looks else 0.0) + map_mm)
+        figure = canvas.sheet(42.0 + (6.0 if looks else 0.0) + map_mm)
         canvas.legend(figure, looks, "outside lower center", ncols=3)
         heights = (map_mm, _BAR_MM)
         row, bars = figure.subplots(2, len(quantities), squeeze=False, height_ratios=heights)
@@ -161,15 +161,15 @@ def _slice(axes: Axes, bar: Axes, maps: WorkspaceMaps, quantity: MapQuantity) ->
     else:
         _scatter(axes, flat, field, quantity.of(field), steps)
     set_limits(axes, flat, maps.flat_m(maps.study.robot.exit_points_m))
-    _mark_focus(axes, maps, flat, quantity)
+    place = f"{_place(maps)}{{}}{_mark_focus(axes, maps, quantity)}"
     right, up = maps.axis_labels
     axes.set(xlabel=right, ylabel=up)
     if steps is None:
         why = "all left out" if field.is_left_out.all() else "no pose can be held"
-        axes.set_title(f"{_place(maps)}; {why}", loc="left")
+        axes.set_title(place.format(f"; {why}"), loc="left")
         bar.remove()
         return
-    axes.set_title(_place(maps), loc="left")
+    axes.set_title(place.format(""), loc="left")
     is_crowded = canvas.decimals(steps.ticks) > 2
     ticks = steps.ticks[:: 2 if is_crowded else 1]
     steps.bar(bar, quantity.label, is_level=True, ticks=ticks)
@@ -293,17 +293,15 @@ def _frame(points: FloatArray, corners: FloatArray) -> tuple[FloatArray, FloatAr
     return 0.5 * (low + high), half, shows_corners
 
 
-def _mark_focus(axes: Axes, maps: WorkspaceMaps, flat: FloatArray, quantity: MapQuantity) -> None:
+def _mark_focus(axes: Axes, maps: WorkspaceMaps, quantity: MapQuantity) -> str:
+    """Mark the worst pose; return what it meets as a line of the title, clear of the map."""
     focus = maps.focus
     is_level = maps.has_area and not maps.is_upright
     if is_level and not np.isclose(focus.position_m[2], maps.section.position_m[0, 0, 2]):
-        return
-    place = maps.flat_m(focus.position_m)
+        return ""
     ring = canvas.RING | {"color": "white" if maps.has_area else "none"}
-    axes.plot(*place, **ring, markersize=6, clip_on=False, zorder=5)
-    middle = flat[0, 0] if flat.ndim == 3 else flat.mean(axis=0)
-    text = quantity.text_of(focus)
-    _write_away(axes, text, place, place - middle, 9.0, fontweight="bold", zorder=6)
+    axes.plot(*maps.flat_m(focus.position_m), **ring, markersize=6, clip_on=False, zorder=5)
+    return f"\n○ {quantity.text_of(focus)}"
 
 
 def _write_away(

@@ -37,6 +37,22 @@ def register_commands() -> list[Callable[..., object]]:
     return [anchor_span]
 
 
+def longest(maker: str) -> None:
+    """Print the grade of a maker with the most sizes."""
+    import typer
+
+    import designer
+
+    grades = (g for g in designer.catalogue().grades if maker in g.manufacturer)
+    typer.echo(max(grades, key=lambda grade: len(grade.sizes)).id)
+
+
+@hookimpl
+def register_catalog_commands() -> list[Callable[..., object]]:
+    """Return the functions that become commands of `designer catalog`: `longest MAKER`."""
+    return [longest]
+
+
 def read_points(path: Path) -> ForeignRobot:
     """Return a point mass on the exit points of a file: x, y and z [m] in each line."""
     from designer.errors import InputError

@@ -47,6 +47,13 @@ def test_a_command(designer) -> None:
     assert "anchor-span" in designer("--help")[1]
 
 
+def test_a_command_of_the_catalogue(designer) -> None:
+    status, printed, notes = designer("catalog", "longest", "Unirope")
+    assert (status, notes) == (0, "")
+    assert printed.startswith("unirope-")
+    assert "longest" in designer("catalog", "--help")[1]
+
+
 def test_an_exporter_and_an_importer(designer) -> None:
     status, printed, notes = designer("export", "hall.yaml", "--to", "points")
     assert (status, printed) == (0, "hall.points written\n")

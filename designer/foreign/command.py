@@ -46,7 +46,7 @@ def _vector(name: str, text: str, dimension: Dimension) -> Any:
     return option(name, metavar="X,Y,Z", text=text, parser=read)
 
 
-def import_robot(
+def import_(
     file: Annotated[Path, argument("FILE", "A CASPR model (.xml), .wcrfx or a plugin's file.")],
     output: Annotated[Path | None, output_option("FILE's name with .yaml", "CONFIG")] = None,
     other: Annotated[

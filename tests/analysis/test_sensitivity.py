@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from designer.analysis.sensitivities import Sensitivities, group_sensitivities
+from designer.analysis.sensitivity import Sensitivities, group_sensitivities
 from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.cable import Cable, Cables
 from designer.model.region import Prism
@@ -115,7 +115,7 @@ def test_slopes_of_groups_are_those_of_differences(
 
 
 def test_report_shows_them(found: tuple[Sensitivities, ...]) -> None:
-    analysis: Any = SimpleNamespace(carries=None, group_slopes=found)
+    analysis: Any = SimpleNamespace(sensitivity=None, group_slopes=found)
     page = rendered(Section("carries", context=sections.sensitivities(analysis) or {})).body
     cells = re.findall(r"<td[^>]*>([^<]*)</td>", page)
     now = cells.index("Utilisation now")

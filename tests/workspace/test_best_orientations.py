@@ -13,7 +13,7 @@ from designer.model.cable import STANDARD_GRAVITY_M_PER_S2 as GRAVITY
 from designer.model.cable import Material
 from designer.model.region import Prism
 from designer.model.robot import Platform, Robot
-from designer.workspace.best_turns import BestTurns
+from designer.workspace.best_orientations import BestOrientations
 
 STEEL = Material(7800.0, 1e11, 1.8e8)
 NEAR = 0.02
@@ -64,7 +64,7 @@ def test_no_orientation_of_a_grid_needs_less(seed: int) -> None:
     robot = random_body(rng, 6 + seed % 3)
     reach_rad = np.radians(rng.uniform(5.0, 20.0, (2, 3))) * [[-1.0], [1.0]] * [1.0, 1.0, 0.0]
     region = Prism.box((-1.5, 1.5), (-1.5, 1.5), (1.0, 4.0))
-    law = BestTurns(robot, STEEL, region, frozen_array(reach_rad))
+    law = BestOrientations(robot, STEEL, region, frozen_array(reach_rad))
     position_m = rng.uniform([-1.5, -1.5, 1.0], [1.5, 1.5, 4.0])
     (turn,), (diameter_m,) = law.best(position_m[None])
     grid = [np.array([*each, 0.0]) for each in product(*np.linspace(*reach_rad, 5).T[:2])]

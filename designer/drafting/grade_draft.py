@@ -11,6 +11,7 @@ from typing import Any
 
 from designer.documents.document import GRADE, document_of
 from designer.documents.edits import scalar
+from designer.drafting.maker_table import MakerRow, MakerTable
 from designer.errors import Fault, InputError
 from designer.grades.checks import flaws_over_diameter
 from designer.grades.grade import (
@@ -24,7 +25,6 @@ from designer.grades.grade import (
 )
 from designer.grades.listing import ton_remarks
 from designer.grades.registry import grade_of
-from designer.io.maker_table import MakerRow, MakerTable
 from designer.units import read_quantity
 
 TEXTS = {

@@ -20,26 +20,27 @@ from designer.arrays import FloatArray, frozen_array
 from designer.model.cable import Material
 from designer.model.region import Region
 from designer.model.robot import Poses, Robot
-from designer.model.space import Following, TurnTable
+from designer.model.space import OrientationLaw, OrientationTable
 from designer.model.workspace import HangsBelow
 from designer.sizing.newton import size_poses
+from designer.spelling import vector
 from designer.workspace.demand import demand_of
 
 _NODES = 256
 """Positions at which the best orientation is sought, at most; between them it is interpolated."""
-_TRIED = {1: 25, 2: 13, 3: 7}
+_GRID = {1: 25, 2: 13, 3: 7}
 """Orientations along each of so many free components, first."""
 _STEPS = 12
 """Of the search from the best of these: to a neighbour, or half as far."""
-_BESIDE = np.array([-1.0, 0.0, 1.0])
+_NEIGHBOURS = np.array([-1.0, 0.0, 1.0])
 _TIE = 1e-4
-"""Relative: what a turn to the end of the range may cost; of orientations as good, the least."""
+"""Relative: what a rotation to the end of the range may cost; of equal ones the least is taken."""
 _CHECKED = 64
 """Positions between the others at which the law is compared with the best."""
 
 
 @dataclass(frozen=True, eq=False)
-class BestTurns(Following):
+class BestOrientations(OrientationLaw):
     """The orientation in a range that needs the thinnest cable of a family, at each position."""
 
     robot: Robot  #: without load cases, as drawn
@@ -51,14 +52,14 @@ class BestTurns(Following):
     hangs_below: HangsBelow = "include"
 
     @cached_property
-    def table(self) -> TurnTable:
+    def table(self) -> OrientationTable:
         """The law: the best orientations where they were sought; level where none holds."""
         positions = self._positions_m(_NODES, 0)
         rotations, diameter_m = self.best(positions)
         is_held = np.isfinite(diameter_m)
         if not is_held.any():
-            return TurnTable(positions[:1], np.clip(np.zeros((1, 3)), *self.range_rad))
-        return TurnTable(frozen_array(positions[is_held]), frozen_array(rotations[is_held]))
+            return OrientationTable(positions[:1], np.clip(np.zeros((1, 3)), *self.range_rad))
+        return OrientationTable(frozen_array(positions[is_held]), frozen_array(rotations[is_held]))
 
     @cached_property
     def excess(self) -> float:
@@ -104,7 +105,7 @@ class BestTurns(Following):
         """
         low, high = self.range_rad
         free = np.flatnonzero(high > low)
-        steps = np.linspace(-1.0, 1.0, _TRIED[len(free)])
+        steps = np.linspace(-1.0, 1.0, _GRID[len(free)])
         n = len(positions_m)
         best = np.tile(0.5 * (low + high), (n, 1))
         least, need = np.full(n, np.inf), np.full(n, np.inf)
@@ -124,17 +125,16 @@ class BestTurns(Following):
             best = np.where(better[:, None], rotations[row, at], best)
             need = np.where(better, diameter_m[row, at], need)
             least = np.minimum(least, value[row, at])
-            if len(steps) > len(_BESIDE):
+            if len(steps) > len(_NEIGHBOURS):
                 reach = reach * 2.0 / (len(steps) - 1)
             else:
                 reach = np.where(better[:, None, None], reach, 0.5 * reach)
-            steps = _BESIDE
+            steps = _NEIGHBOURS
         return best, need
 
-    def _diameter_m(self, places: FloatArray, *, is_quick: bool = True) -> FloatArray:
+    def _diameter_m(self, places: FloatArray) -> FloatArray:
         """Return what places (n, 6) need [m]; infinite where nothing holds or it is left out."""
-        poses = Poses.at(places)
-        sizing = size_poses(self.robot, poses, self.material)
+        sizing = size_poses(self.robot, Poses.at(places), self.material)
         demand = demand_of(sizing.diameter_m, sizing.statics, self.hangs_below)
         return np.where(np.isneginf(demand), np.inf, demand)
 
@@ -147,9 +147,7 @@ class BestTurns(Following):
 
     @property
     def words(self) -> str:
-        low, high = (
-            f"({', '.join(f'{angle:.3g}' for angle in np.degrees(end))})" for end in self.range_rad
-        )
+        low, high = (vector(np.degrees(end), 3) for end in self.range_rad)
         costs = (
             f"at {_CHECKED} others the thickest cable along this law is {self.excess:.1%} thicker "
             "than in the best orientation of each"

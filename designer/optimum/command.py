@@ -51,7 +51,7 @@ def optimise(
 
     from designer.optimum.optimise import optimum_of
     from designer.optimum.plan import read_optimisation
-    from designer.report.optimum import write_optimum
+    from designer.optimum.report import write_optimum
     from designer.report.render import REPORT_FILES, write_report_files
 
     laid_out = read_optimisation(plan, with_plugins=not no_plugins)
@@ -83,7 +83,7 @@ def _print_summary(optimum: Optimum) -> None:
     from rich.markup import escape
 
     from designer.cli.terminal import bare_table, show
-    from designer.report.optimum import headline, trust_lines, variable_rows
+    from designer.optimum.report import headline, trust_lines, variable_rows
 
     show(headline(optimum), markup=False)
     table = bare_table("", "given", "optimised", "bounds")

@@ -17,9 +17,9 @@ from designer.arrays import BoolArray, FloatArray
 from designer.documents.plain import csv_text
 from designer.io.output import write_whole
 from designer.report.document import Report, Section, vector
-from designer.report.figures import sweep as figures
-from designer.report.figures.sweep import Axis
 from designer.report.render import write_pages
+from designer.sweeps import figures
+from designer.sweeps.figures import Axis
 
 if TYPE_CHECKING:
     import xarray as xr

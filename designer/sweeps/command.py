@@ -49,9 +49,9 @@ def sweep(
 
     announce_compiling()
 
-    from designer.report.sweep import write_sweep
     from designer.sweeps import run as running
     from designer.sweeps.plan import read_sweep
+    from designer.sweeps.report import write_sweep
     from designer.sweeps.run import opened, read_store, report_folder
 
     laid_out = read_sweep(plan, with_plugins=not no_plugins)
@@ -89,7 +89,7 @@ def _print_summary(dataset: xr.Dataset) -> None:
 
     from designer.analysis.result_json import evaluates_answer
     from designer.cli.terminal import bare_table, show
-    from designer.report.sweep import NOT_EVALUATED, unit_of
+    from designer.sweeps.report import NOT_EVALUATED, unit_of
 
     table = bare_table(
         "", "least", "median", "most", "points", title=_points(dataset.sizes["point"])

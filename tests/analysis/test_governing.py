@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.modes import modes_of
+from designer.analysis.governing import modes_of
 from designer.io.config import read_study
 
 CRANE = """\

@@ -14,14 +14,14 @@ from designer.cli.options import NoPlugins, argument, can_ask, output_option
 from designer.errors import Fault, InputError
 
 if TYPE_CHECKING:
+    from designer.drafting.grade_draft import GradeDraft, OffTheLaw
+    from designer.drafting.maker_table import MakerTable
     from designer.grades.grade import Grade
-    from designer.io.grade_draft import GradeDraft, OffTheLaw
-    from designer.io.maker_table import MakerTable
 
 _REPEATED = "Several times, once for each."
 
 
-def catalog_new(
+def new(
     table: Annotated[Path, argument("TABLE", "CSV, Excel workbook or PDF, a row for each size.")],
     output: Annotated[Path | None, output_option("TABLE's name with .yaml", "FILE")] = None,
     page: Annotated[
@@ -76,8 +76,8 @@ def catalog_new(
     Exit status 0: the file is whole. 1: it is written, and comments in it say what is missing. 2:
     the table or an option is wrong, and nothing is written.
     """
-    from designer.io.grade_draft import TEXTS, GradeDraft
-    from designer.io.maker_table import FIGURES, read_maker_table
+    from designer.drafting.grade_draft import TEXTS, GradeDraft
+    from designer.drafting.maker_table import FIGURES, read_maker_table
     from designer.io.output import write_new_file
 
     columns, units = _pairs("--column", column, FIGURES), _pairs("--unit", unit, FIGURES[1:])
@@ -128,7 +128,7 @@ def _grade(grade_id: str, no_plugins: bool) -> Grade:
 
 def _usual(table: Path, lender: Grade | None) -> dict[str, str]:
     """Return what is usual where nobody says otherwise."""
-    from designer.io.grade_draft import COPIED
+    from designer.drafting.grade_draft import COPIED
 
     grade_id = re.sub(r"[^a-z0-9]+", "-", table.stem.casefold()).strip("-")
     usual = {"id": grade_id, "trust": "C", "source.document": table.name}
@@ -150,8 +150,8 @@ def _choose(figure: str, heads: Sequence[str], why: str) -> int | None:
 
 def _units(table: MakerTable, named: Mapping[str, str]) -> dict[str, str]:
     """Return the unit of each figure: as an option has it, as the table prints it, or as asked."""
+    from designer.drafting.maker_table import SIZE, known_unit
     from designer.grades.grade import DIMENSIONS
-    from designer.io.maker_table import SIZE, known_unit
 
     units: dict[str, str] = {}
     faults = []
@@ -196,7 +196,7 @@ def _asked(draft: GradeDraft, no_plugins: bool) -> GradeDraft:
     """Return the draft with what somebody at the terminal says of it."""
     from dataclasses import replace
 
-    from designer.io.grade_draft import ELASTICITY, OPTIONAL, TEXTS
+    from designer.drafting.grade_draft import ELASTICITY, OPTIONAL, TEXTS
 
     texts, like = dict(draft.texts), draft.like
     for name, meaning in TEXTS.items():
@@ -221,7 +221,7 @@ def _with_doubt(draft: GradeDraft) -> GradeDraft:
     """Return the draft where no row is off the law, or somebody says why; refuse it otherwise."""
     from dataclasses import replace
 
-    from designer.io.grade_draft import refused
+    from designer.drafting.grade_draft import refused
 
     off = draft.off_the_law()
     if not off:
@@ -254,7 +254,7 @@ def _print_off(draft: GradeDraft, off: Sequence[OffTheLaw]) -> None:
 
 
 def _print_end(path: Path, draft: GradeDraft, trust_is_given: bool) -> None:
-    from designer.io.grade_draft import TEXTS
+    from designer.drafting.grade_draft import TEXTS
 
     typer.echo(f"{path} written: {draft.texts.get('id', '')}, {len(draft.rows)} sizes.")
     if draft.like is not None:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import nnls
 
-from designer.analysis.adrift import adrift_in
-from designer.analysis.findings import Findings
+from designer.analysis.findings import Findings, equilibrium_losses
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Wind
 from designer.model.region import Prism
@@ -34,15 +33,15 @@ def test_share_and_direction_are_those_of_pulls_alone() -> None:
     for count in (3, 4):
         robot = Robot(EXITS[:count], Platform(40.0, drag_area_m2=1.2))
         storm = LoadCase("storm", wind=Wind(28.0, 1.2, count=4))
-        (found,) = adrift_in(robot, WORKSPACE, (LoadCase("static"), storm), CABLE)
-        assert found.loaded.wind is not None
-        push = 0.5 * 1.25 * 28.0**2 * 1.2 * found.loaded.wind
+        (loss,) = equilibrium_losses(robot, WORKSPACE, (LoadCase("static"), storm), CABLE)
+        assert loss.loaded.wind is not None
+        push = 0.5 * 1.25 * 28.0**2 * 1.2 * loss.loaded.wind
         load = np.array([0.0, 0.0, -40.0 * 9.81]) + push
-        np.testing.assert_allclose(found.push_N, np.linalg.norm(push), rtol=1e-12)
-        assert left_N(found.place, load, robot.exit_points_m) > 1.0
-        assert left_N(found.place, load - push, robot.exit_points_m) < 1e-6
-        assert 0.1 < found.share <= 1.0
-        text = SHOWN.render(findings=Findings(adrift=(found,)), paged=False)
+        np.testing.assert_allclose(loss.push_N, np.linalg.norm(push), rtol=1e-12)
+        assert left_N(loss.place, load, robot.exit_points_m) > 1.0
+        assert left_N(loss.place, load - push, robot.exit_points_m) < 1e-6
+        assert 0.1 < loss.share <= 1.0
+        text = SHOWN.render(findings=Findings(equilibrium_losses=(loss,)), paged=False)
         assert '<p class="statement bad">' in text
         assert "load case &#39;storm&#39;" in text
 
@@ -50,4 +49,4 @@ def test_share_and_direction_are_those_of_pulls_alone() -> None:
 def test_a_breeze_carries_nothing_away() -> None:
     robot = Robot(EXITS[:3], Platform(400.0, drag_area_m2=1.2))
     breeze = LoadCase("breeze", wind=Wind(5.0, 1.2)), LoadCase("start", acceleration_m_per_s2=0.2)
-    assert not list(adrift_in(robot, WORKSPACE, breeze, CABLE))
+    assert not list(equilibrium_losses(robot, WORKSPACE, breeze, CABLE))

@@ -13,12 +13,12 @@ from designer.documents.document import document_of
 from designer.documents.plain import json_text
 from designer.io.config.moved import moved_to
 from designer.io.output import write_whole
+from designer.optimum import figures
 from designer.optimum.optimise import Optimum
 from designer.progress import SILENT, Reporter
 from designer.report import format as fmt
 from designer.report.comparison import write_comparison
 from designer.report.document import MOST_ROWS, Drawing, Report, Section, vector
-from designer.report.figures import optimum as figures
 from designer.report.phrases import paragraphs
 from designer.report.render import write_pages
 from designer.report.templates import environment
