@@ -24,7 +24,7 @@ from designer.statics.inverse import solve_sagging
 from designer.statics.sizes import has_fast_solver
 from designer.study import Objective
 from designer.workspace.demand import is_counted
-from designer.workspace.effort import coverage_samples
+from designer.workspace.effort import SLOW_COVERAGE, slow_positions
 
 Outcome = Literal["fits", "rejected", "too_thin", "no_finite_cable", "open"]
 """``rejected``: sizes are strong enough, but fail another requirement; ``too_thin``: no size holds;
@@ -214,7 +214,8 @@ def usable(
     if has_fast_solver(robot):
         batches = workspace.places()
     else:
-        batches = iter([workspace.thinned(coverage_samples(workspace))])
+        count = slow_positions(workspace, SLOW_COVERAGE)
+        batches = iter([workspace.thinned(count * workspace.orientations.count)])
     for batch in batches:
         is_served = np.stack([serves(robot, workspace, cable, batch) for _, cable in cables])
         at = is_served.reshape(len(cables), -1, workspace.orientations.count).all(axis=2)

@@ -46,11 +46,19 @@ CANDIDATE_STIFFNESS = 500
 """Of each candidate, where stiffness is an objective."""
 GUESS = 16
 """That tell which grade serves most, where each takes long."""
+MOTION = 64
+"""That show whether a motion of the platform is free in all poses."""
+EQUILIBRIUM = 512
+"""In each direction of a load, where straight cables may not be in equilibrium."""
+EQUILIBRIUM_REDUNDANT = 32
+"""The same with cables to spare, where each is a programme."""
+HANGING = 20_000
+"""With poses in which a cable hangs below the platform left out, where the study includes them, and
+the reverse."""
+SLOW_COVERAGE, SLOW_HANGING = 1000, 2000
+"""Places that show what share sizes serve, and for the above, of robots that are slow to solve."""
 
 
-def coverage_samples(workspace: Workspace) -> int:
-    """Return how many show what share sizes serve, of robots that are slow to solve.
-
-    So many places, and so many positions, each in all orientations, at least.
-    """
-    return max(1000, 100 * workspace.orientations.count)
+def slow_positions(workspace: Workspace, places: int) -> int:
+    """Return how many positions have about so many places in all orientations, 100 at least."""
+    return max(places // workspace.orientations.count, 100)
