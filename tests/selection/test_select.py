@@ -256,12 +256,9 @@ def test_search_turns_down_a_size_that_only_the_samples_let_pass(fast_robot) -> 
     assert found.chosen is above
 
 
-SMALL_TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
-
-
 @pytest.fixture(scope="module")
 def candidates(fast_robot) -> tuple[Candidate, ...]:
-    workspace = Workspace(Prism.over(SMALL_TRIANGLE, 30.0, (-200.0, -50.0)), samples=800)
+    workspace = Workspace(Prism.over(TRIANGLE, 30.0, (-200.0, -50.0)), samples=800)
     grades = [
         rope("steel", [6.0, 12.0, 16.0, 20.0, 24.0, 40.0]),
         rope("light", [8.0, 12.0, 20.0], weight=0.2, stiffness=0.4),
