@@ -362,7 +362,7 @@ def lies_in_plane(parts: Parts) -> Iterator[Fault]:
         if off.max() > _FLAT * size:
             expected = "what lies in the vertical plane of the anchors, as robot.planar asks"
             yield parts.fault(path, f"leaves that plane by {off.max():.3g}", expected)
-    for path, turns in _turns(parts):
+    for path, turns in _rotation_axes(parts):
         if np.linalg.norm(np.cross(turns, normal), axis=1).max() > _FLAT:
             yield parts.fault(path, "turns the platform out of the plane", "a turn in the plane")
 
@@ -395,7 +395,7 @@ def _vectors(parts: Parts, origin: FloatArray, size: float) -> Iterator[tuple[st
                 yield "load_cases", along[None] * size / np.linalg.norm(along)
 
 
-def _turns(parts: Parts) -> Iterator[tuple[str, FloatArray]]:
+def _rotation_axes(parts: Parts) -> Iterator[tuple[str, FloatArray]]:
     """Yield where turns and moments stand, and their axes (n, 3)."""
     pose = parts.read("pose")
     if pose is not None:

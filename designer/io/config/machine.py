@@ -29,10 +29,10 @@ from designer.arrays import FloatArray, frozen_array
 from designer.documents import fields
 from designer.documents.bounds import MAX_CABLES
 from designer.documents.fields import (
+    AngleInterval,
     Rotation,
     Section,
     Text,
-    Turn,
     WholeNumber,
     bounded,
     by_list,
@@ -159,9 +159,9 @@ class FollowingSection(OrientationSection):
 class OrientationRangeSection(Section):
     """Components of the rotation vector between two ends each; zero where left out."""
 
-    rx: Turn | None = Field(None, title="Turn about x", description=_BETWEEN)
-    ry: Turn | None = Field(None, title="Turn about y", description=_BETWEEN)
-    rz: Turn | None = Field(None, title="Turn about z", description=_BETWEEN)
+    rx: AngleInterval | None = Field(None, title="Turn about x", description=_BETWEEN)
+    ry: AngleInterval | None = Field(None, title="Turn about y", description=_BETWEEN)
+    rz: AngleInterval | None = Field(None, title="Turn about z", description=_BETWEEN)
 
     @model_validator(mode="after")
     def _has_a_component(self) -> OrientationRangeSection:
