@@ -394,7 +394,7 @@ Stiffness = Annotated[float, bounded("stiffness")]
 DrumCapacity = Annotated[float, bounded("drum capacity")]
 
 Interval = Annotated[tuple[Length, Length], list_of(2, 2, _INTERVAL), AfterValidator(_rising)]
-Turn = Annotated[
+AngleInterval = Annotated[
     tuple[HalfTurn, HalfTurn],
     list_of(2, 2, _INTERVAL),
     AfterValidator(partial(_rising, unit="rad")),

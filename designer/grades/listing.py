@@ -116,10 +116,10 @@ def ton_remarks(grade: Grade) -> list[str]:
     stated = next((t for t in TONS if math.isclose(read_quantity(f"1 {t}", FORCE), unit_N)), None)
     if stated is None:
         return []
-    remarks, beside = [], f"{units.diameter} and {units.linear_mass}"
-    if stated == "tonf" and re.search(r"\bin|lb|pound|ft|foot", beside):
+    remarks, pair = [], f"{units.diameter} and {units.linear_mass}"
+    if stated == "tonf" and re.search(r"\bin|lb|pound|ft|foot", pair):
         remarks.append(
-            f"tonf is 1000 kgf; beside {beside} most tons are of 2000 lb, short_ton_force, 9 % less"
+            f"tonf is 1000 kgf; beside {pair} most tons are of 2000 lb, short_ton_force, 9 % less"
         )
     kind = (grade.construction.partition(" ")[0], grade.core)
     ratios = [

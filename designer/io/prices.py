@@ -168,7 +168,7 @@ def _number(column: str, text: str, bound: Bound, scale: float = 1.0) -> float:
         value = float(text)
     except ValueError:
         value = float("nan")
-    least, most = bound.least / scale, bound.most / scale
-    if not least <= value <= most:
-        raise _FlawError(column, f"holds {text!r}", f"a number from {least:g} to {most:g}")
+    lowest, highest = bound.least / scale, bound.most / scale
+    if not lowest <= value <= highest:
+        raise _FlawError(column, f"holds {text!r}", f"a number from {lowest:g} to {highest:g}")
     return value

@@ -138,12 +138,12 @@ class Measurements(checked.Value):
 
     def of_session(self, session: int) -> Measurements:
         """Return those of one session, from 1, as if there were no other."""
-        own = self.sessions[session - 1]
+        log_session = self.sessions[session - 1]
         return replace(
             self,
-            file=own.file,
-            more_files=own.more_files,
-            unknown=(*self.unknown, *own.unknown),
+            file=log_session.file,
+            more_files=log_session.more_files,
+            unknown=(*self.unknown, *log_session.unknown),
             sessions=(),
             place=f"measurements.sessions[{session - 1}].file",
         )
@@ -151,13 +151,13 @@ class Measurements(checked.Value):
     @property
     def with_nothing_unknown(self) -> Measurements:
         """The same, as if all were known."""
-        sessions = tuple(replace(each, unknown=()) for each in self.sessions)
+        sessions = tuple(replace(session, unknown=()) for session in self.sessions)
         return replace(self, unknown=(), sessions=sessions)
 
     @property
     def all_unknown(self) -> tuple[str, ...]:
         """What is unknown of the machine, and of any session."""
-        every = (*self.unknown, *(name for each in self.sessions for name in each.unknown))
+        every = (*self.unknown, *(name for session in self.sessions for name in session.unknown))
         return tuple(dict.fromkeys(every))
 
     @property
@@ -177,8 +177,8 @@ class Measurements(checked.Value):
     @property
     def declared_noise(self) -> dict[str, float]:
         """Standard deviations that are given, of ``length`` [m] and ``tension`` [N]."""
-        given = {"length": self.length_noise_m, "tension": self.tension_noise_N}
-        return {kind: size for kind, size in given.items() if size is not None}
+        sizes = {"length": self.length_noise_m, "tension": self.tension_noise_N}
+        return {kind: size for kind, size in sizes.items() if size is not None}
 
     @property
     def has_poses(self) -> bool:

@@ -22,7 +22,7 @@ from designer.sizing.newton import size_poses
 from designer.sizing.scp import size_by_scp
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import sag_ratio, solve_sagging
-from designer.statics.sizes import meet
+from designer.statics.sizes import evaluate_sizes
 
 
 @numba.njit
@@ -191,7 +191,7 @@ def test_what_a_size_meets_is_what_its_poses_meet(diameter_m: float) -> None:
     poses, cable = four_poses(200, 5), steel(2.0).cable(diameter_m)
     statics = solve_sagging(robot, poses, cable)
     cells = np.zeros(200, dtype=int)
-    meets = meet(robot, poses, [cable], cells, 1, leaves_out_hanging=False)
+    meets = evaluate_sizes(robot, poses, [cable], cells, 1, leaves_out_hanging=False)
     assert meets.counted[0] == statics.is_solved.sum()
     assert np.array_equal(meets.failed[0], ~statics.is_solved)
     if statics.is_solved.any():

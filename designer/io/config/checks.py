@@ -294,8 +294,8 @@ def load_is_not_cancelled(parts: Parts) -> Iterator[Fault]:
     )
     weight = mass_kg * STANDARD_GRAVITY_M_PER_S2 * parts.down / np.linalg.norm(parts.down)
     moment, lever = (
-        np.zeros(3) if found is None else found
-        for found in map(
+        np.zeros(3) if vector is None else vector
+        for vector in map(
             parts.array, ("robot.platform.wrench.moment", "robot.platform.centre_of_mass")
         )
     )
@@ -362,7 +362,7 @@ def lies_in_plane(parts: Parts) -> Iterator[Fault]:
         if off.max() > _FLAT * size:
             expected = "what lies in the vertical plane of the anchors, as robot.planar asks"
             yield parts.fault(path, f"leaves that plane by {off.max():.3g}", expected)
-    for path, turns in _turns(parts):
+    for path, turns in _rotation_axes(parts):
         if np.linalg.norm(np.cross(turns, normal), axis=1).max() > _FLAT:
             yield parts.fault(path, "turns the platform out of the plane", "a turn in the plane")
 
@@ -395,7 +395,7 @@ def _vectors(parts: Parts, origin: FloatArray, size: float) -> Iterator[tuple[st
                 yield "load_cases", along[None] * size / np.linalg.norm(along)
 
 
-def _turns(parts: Parts) -> Iterator[tuple[str, FloatArray]]:
+def _rotation_axes(parts: Parts) -> Iterator[tuple[str, FloatArray]]:
     """Yield where turns and moments stand, and their axes (n, 3)."""
     pose = parts.read("pose")
     if pose is not None:
@@ -445,14 +445,14 @@ def winches_fit(parts: Parts) -> Iterator[Fault]:
 def lists_by_cable_fit(parts: Parts) -> Iterator[Fault]:
     """A list by cable has an entry for each of them."""
     anchors = parts.array(_ANCHORS)
-    for path, noun, none in (
+    for path, noun, absent in (
         ("robot.winches.tension_max", "tensions", "no limit"),
         ("robot.attached", "entries", "nothing"),
     ):
         entries = parts.read(path)
         if anchors is not None and isinstance(entries, tuple) and len(entries) != len(anchors):
             problem = f"{len(entries)} {noun} for {len(anchors)} anchors"
-            expected = f"one for each anchor, in their order, null for {none}"
+            expected = f"one for each anchor, in their order, null for {absent}"
             yield parts.fault(path, problem, expected)
 
 
@@ -617,9 +617,9 @@ _EXCLUDES = (
 
 def fields_go_together(parts: Parts) -> Iterator[Fault]:
     """What each field needs is there, and what excludes another is there alone."""
-    given = {path for path, *_ in (*_NEEDS, *_EXCLUDES) if parts.raw(path) not in (None, [])}
+    paths = {path for path, *_ in (*_NEEDS, *_EXCLUDES) if parts.raw(path) not in (None, [])}
     for path, needed, problem, expected in _NEEDS:
-        if path in given and parts.raw(needed) is None:
+        if path in paths and parts.raw(needed) is None:
             yield parts.fault(path, problem, expected)
     if parts.raw("robot.winches.motor") is None and parts.raw(_DRUM) is None:
         for name in ("drum_diameter", "layers"):
@@ -627,7 +627,7 @@ def fields_go_together(parts: Parts) -> Iterator[Fault]:
                 problem = "there is no motor to drive it, and no length of the drum"
                 yield parts.fault(f"robot.winches.{name}", problem, _NO_USE)
     for path, problem, expected in _EXCLUDES:
-        if path in given and parts.raw(_GROUPS) is not None:
+        if path in paths and parts.raw(_GROUPS) is not None:
             yield parts.fault(_GROUPS, problem, expected)
     if parts.raw(_GROUPS) is not None and len(attached_each(parts.read("robot.attached"))) > 1:
         problem = "groups of cables are chosen where the same is attached to all of them"

@@ -33,13 +33,66 @@ class DeclaredEffects:
         """Add something that is wrong."""
         self.flaws.append(Flaw(keys, problem, expected))
 
-    def read(self, place: Keys, kind: QuantityField | WholeNumber, content: Data) -> float | None:
-        """Return a value; None, and a refusal, for one that is none of its kind."""
+    def read_effect(self, effect: Effect, data: Data) -> None:
+        """Add what the section says of an effect: a mapping, or a list of them by cable."""
+        place: Keys = (*self.section, effect.id)
+        if not effect.takes_cable or not isinstance(data, list):
+            self._read_mapping(effect, place, data)
+            return
+        if not data:
+            self.refuse(place, "an empty list", "one mapping for each cable that has this effect")
+        for index, item in enumerate(data):
+            self._read_mapping(effect, (*place, index), item)
+        seen: set[int] = set()
+        for earlier, declared in self.effects:
+            if declared.id == effect.id and declared.cable is not None:
+                if declared.cable in seen:
+                    problem = f"cable {declared.cable} has this effect already"
+                    self.refuse((*earlier, "cable"), problem, "each cable once")
+                seen.add(declared.cable)
+
+    def _read_mapping(self, effect: Effect, place: Keys, data: Data) -> None:
+        parameters = effect.parameters_for(self.n_cables)
+        keys = ["cable"] * effect.takes_cable + [parameter.name for parameter in parameters]
+        if not isinstance(data, dict) or not data:
+            problem = f"{'an empty mapping' if data == {} else describe(data)} is not a mapping"
+            self.refuse(place, f"{problem} with values", f"a mapping with {_listed(keys)}")
+            return
+        misspelt = set()  # what was probably meant by names that are no parameters
+        for key in data:
+            if key not in keys:
+                problem = f"unknown parameter '{printable(key)}'"
+                expected = f"one of {_listed(keys)}{did_you_mean(key, keys)}"
+                self.refuse((*place, key), problem, expected)
+                misspelt.add(nearest_name(key, keys) or key)
+        cable = None
+        if effect.takes_cable and "cable" not in misspelt:
+            at = (*place, "cable")
+            if "cable" in data:
+                cable = self._number(at, WholeNumber(1, self.n_cables), data["cable"])
+            else:
+                self.refuse(at, "is missing", f"the number of the cable, 1 to {self.n_cables}")
+        values = {}
+        for parameter in parameters:
+            name = parameter.name
+            if name in misspelt:
+                continue
+            if name in data:
+                values[name] = self._number((*place, name), field_of(parameter), data[name]) or 0.0
+            else:
+                values[name] = parameter.neutral
+                if not parameter.is_optional:
+                    self.refuse((*place, name), "is missing", parameter.dimension.expected)
+        declared = DeclaredEffect(effect.id, None if cable is None else int(cable), values)
+        self.effects.append((place, declared))
+
+    def _number(self, keys: Keys, kind: QuantityField | WholeNumber, data: Data) -> float | None:
+        """Return a number; None, and a refusal, for what is none of its kind."""
         try:
-            return kind.read(content)
+            return kind.read(data)
         except PydanticCustomError as error:
             context = error.context or {}
-            self.refuse(place, context["problem"], context["expected"])
+            self.refuse(keys, context["problem"], context["expected"])
             return None
 
 
@@ -55,75 +108,8 @@ def read_effects(
             expected = f"one of {', '.join(effects_by_id)}{did_you_mean(effect_id, effects_by_id)}"
             declared_effects.refuse((*section, effect_id), problem, expected)
         else:
-            _read_all(declared_effects, effect, content)
+            declared_effects.read_effect(effect, content)
     return declared_effects
-
-
-def _read_all(declared_effects: DeclaredEffects, effect: Effect, data: Data) -> None:
-    place: Keys = (*declared_effects.section, effect.id)
-    if not effect.takes_cable or not isinstance(data, list):
-        _read_one(declared_effects, effect, place, data)
-        return
-    if not data:
-        declared_effects.refuse(
-            place, "an empty list", "one mapping for each cable that has this effect"
-        )
-    for index, item in enumerate(data):
-        _read_one(declared_effects, effect, (*place, index), item)
-    seen: set[int] = set()
-    for earlier, declared in declared_effects.effects:
-        if declared.id == effect.id and declared.cable is not None:
-            if declared.cable in seen:
-                problem = f"cable {declared.cable} has this effect already"
-                declared_effects.refuse((*earlier, "cable"), problem, "each cable once")
-            seen.add(declared.cable)
-
-
-def _read_one(declared_effects: DeclaredEffects, effect: Effect, place: Keys, data: Data) -> None:
-    parameters = effect.parameters_for(declared_effects.n_cables)
-    keys = ["cable"] * effect.takes_cable + [parameter.name for parameter in parameters]
-    if not isinstance(data, dict) or not data:
-        problem = f"{'an empty mapping' if data == {} else describe(data)} is not a mapping"
-        declared_effects.refuse(place, f"{problem} with values", f"a mapping with {_listed(keys)}")
-        return
-    misspelt = set()  # what was probably meant by names that are no parameters
-    for key in data:
-        if key not in keys:
-            problem = f"unknown parameter '{printable(key)}'"
-            expected = f"one of {_listed(keys)}{did_you_mean(key, keys)}"
-            declared_effects.refuse((*place, key), problem, expected)
-            misspelt.add(nearest_name(key, keys) or key)
-    cable = None
-    if effect.takes_cable and "cable" not in misspelt:
-        at = (*place, "cable")
-        if "cable" in data:
-            number = declared_effects.read(
-                at, WholeNumber(1, declared_effects.n_cables), data["cable"]
-            )
-            cable = None if number is None else int(number)
-        else:
-            declared_effects.refuse(
-                at, "is missing", f"the number of the cable, 1 to {declared_effects.n_cables}"
-            )
-    values = {
-        parameter.name: _value(declared_effects, (*place, parameter.name), data, parameter)
-        for parameter in parameters
-        if parameter.name not in misspelt
-    }
-    declared_effects.effects.append((place, DeclaredEffect(effect.id, cable, values)))
-
-
-def _value(
-    declared_effects: DeclaredEffects,
-    place: Keys,
-    content: Mapping[str, Data],
-    parameter: Parameter,
-) -> float:
-    if parameter.name not in content:
-        if not parameter.is_optional:
-            declared_effects.refuse(place, "is missing", parameter.dimension.expected)
-        return parameter.neutral
-    return declared_effects.read(place, field_of(parameter), content[parameter.name]) or 0.0
 
 
 def field_of(parameter: Parameter) -> QuantityField:

@@ -29,10 +29,10 @@ from designer.arrays import FloatArray, frozen_array
 from designer.documents import fields
 from designer.documents.bounds import MAX_CABLES
 from designer.documents.fields import (
+    AngleInterval,
     Rotation,
     Section,
     Text,
-    Turn,
     WholeNumber,
     bounded,
     by_list,
@@ -159,9 +159,9 @@ class FollowingSection(OrientationSection):
 class OrientationRangeSection(Section):
     """Components of the rotation vector between two ends each; zero where left out."""
 
-    rx: Turn | None = Field(None, title="Turn about x", description=_BETWEEN)
-    ry: Turn | None = Field(None, title="Turn about y", description=_BETWEEN)
-    rz: Turn | None = Field(None, title="Turn about z", description=_BETWEEN)
+    rx: AngleInterval | None = Field(None, title="Turn about x", description=_BETWEEN)
+    ry: AngleInterval | None = Field(None, title="Turn about y", description=_BETWEEN)
+    rz: AngleInterval | None = Field(None, title="Turn about z", description=_BETWEEN)
 
     @model_validator(mode="after")
     def _has_a_component(self) -> OrientationRangeSection:
@@ -451,14 +451,14 @@ ConfiguredTensionMax = Annotated[
 
 
 def tension_max_each(
-    raw: float | tuple[float | None, ...] | None,
+    configured: float | tuple[float | None, ...] | None,
 ) -> FloatArray | float | None:
     """Return the largest tension of all winches, or of each where they differ [N]."""
-    if not isinstance(raw, tuple):
-        return raw
-    if len(set(raw)) == 1:
-        return raw[0]
-    return frozen_array([np.inf if largest is None else largest for largest in raw])
+    if not isinstance(configured, tuple):
+        return configured
+    if len(set(configured)) == 1:
+        return configured[0]
+    return frozen_array([np.inf if largest is None else largest for largest in configured])
 
 
 class WinchesSection(Section):
@@ -539,10 +539,10 @@ class AttachedSection(Section):
 
 
 def attached_each(
-    raw: AttachedSection | tuple[AttachedSection | None, ...] | None,
+    configured: AttachedSection | tuple[AttachedSection | None, ...] | None,
 ) -> AttachedEach:
     """Return what is attached to each cable; one entry where all are alike, none of nothing."""
-    sections = raw if isinstance(raw, tuple) else (raw,)
+    sections = configured if isinstance(configured, tuple) else (configured,)
     lines = tuple(Attached() if section is None else section.attached for section in sections)
     if len(set(lines)) > 1:
         return lines
@@ -734,14 +734,14 @@ ConfiguredWrenchSet = Annotated[
 
 
 def wrench_set_of(
-    raw: WrenchBoxSection | tuple[ListedWrenchSection, ...] | None,
+    configured: WrenchBoxSection | tuple[ListedWrenchSection, ...] | None,
 ) -> WrenchSet | None:
     """Return the wrenches of a load case."""
-    if raw is None:
+    if configured is None:
         return None
-    if isinstance(raw, WrenchBoxSection):
-        return WrenchSet.between(*frozen_array([*raw.force, *raw.moment]).T)
-    return WrenchSet(frozen_array([section.wrench_N for section in raw]))
+    if isinstance(configured, WrenchBoxSection):
+        return WrenchSet.between(*frozen_array([*configured.force, *configured.moment]).T)
+    return WrenchSet(frozen_array([section.wrench_N for section in configured]))
 
 
 class LoadCaseSection(Section):

@@ -373,7 +373,7 @@ class _PlacesBuilder:
         workspace = section.workspace
         assert workspace is not None
         table = self._table((*_PATH, "file"), path.file)
-        places = self._turned(workspace, table, path.file)
+        places = self._path_places(workspace, table, path.file)
         faults = list(path_faults(table, has_limits=path.speed_max is not None))
         if faults:
             raise InputError(faults)
@@ -414,7 +414,7 @@ class _PlacesBuilder:
                 problem = f"has no inertia beside it, and {problem}"
                 raise self._error(keys, problem, f"inertia: {expected}")
 
-    def _turned(self, section: WorkspaceSection, table: PoseTable, name: str) -> FloatArray:
+    def _path_places(self, section: WorkspaceSection, table: PoseTable, name: str) -> FloatArray:
         """Return the places of a path (n_rows, 6), turned as it says or in one way all along."""
         has_turns = table.places.shape[1] == 6
         single = section.orientation

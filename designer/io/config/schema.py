@@ -303,7 +303,7 @@ Groups = Annotated[
 
 ORIENTATION_KINDS = ("orientation", "orientations", "orientation_range", "orientation_free")
 _PLACES = ("region", "poses", "path")
-TurnList = Annotated[
+OrientationList = Annotated[
     tuple[OrientationSection, ...],
     fields.list_of(1, 100, "1 to 100 orientations such as [0, 0, 10 deg]"),
 ]
@@ -404,7 +404,7 @@ class WorkspaceSection(Section):
     orientation: FollowingSection | None = None
     """How the platform is turned at every position: fixed, toward a point, or as a table has
     it."""
-    orientations: TurnList | None = None
+    orientations: OrientationList | None = None
     """Several orientations, all of them asked for at every position."""
     orientation_range: OrientationRangeSection | None = None
     """All rotation vectors between two ends a component, zero where left out, asked for at
