@@ -525,10 +525,7 @@ def _first_distances_m(
 ) -> FloatArray:
     """March out along all ways (n,) of each direction until one fails, and bisect the last step.
 
-    Returns
-    -------
-    array (n,)
-        Where the first of a direction fail [m]; infinite for the others.
+    Returned is where the first of each direction fail (n,) [m]; infinite for the others.
     """
     low, high = np.zeros(len(direction_of)), np.full(len(direction_of), np.inf)
     active = np.arange(len(direction_of))

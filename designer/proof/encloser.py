@@ -50,19 +50,11 @@ class Cover:
         return np.hstack([position, turn])
 
     def cut(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Cut boxes at the border of the region.
+        """Cut boxes (n, k) at the border of the region.
 
-        Parameters
-        ----------
-        low, high : array (n, k)
-            Boxes.
-
-        Returns
-        -------
-        low, high : array (n, k)
-            The smallest boxes around what is left; low above high where that is nothing.
-        corners : array (n, n_corners, 2)
-            Corners of what is left, first two coordinates; some stand there more than once.
+        Returned are low and high of the smallest boxes (n, k) around what remains, low above high
+        where that is nothing, and its corners (n, n_corners, 2) in the first two coordinates, some
+        more than once.
         """
         x, y = np.stack([low[:, :2], high[:, :2]], axis=-1).transpose(1, 0, 2)
         plan = np.stack([x[:, [0, 1, 1, 0]], y[:, [0, 0, 1, 1]]], axis=-1)
@@ -143,17 +135,7 @@ def _cut_at(plan: FloatArray, side: FloatArray) -> FloatArray:
 def border_m(cover: Cover, boxes: BoxEnds, others: BoxEnds) -> FloatArray:
     """Return the faces that boxes have in common with others, inside the region.
 
-    Parameters
-    ----------
-    cover : Cover
-        Whose coordinates they have.
-    ones, others : pair of array (n, 3)
-        Low and high corners of boxes that do not overlap.
-
-    Returns
-    -------
-    array (n_triangles, 3, 3)
-        Corners of triangles [m].
+    The boxes, in coordinates of the cover, do not overlap; the faces are triangles (n, 3, 3) [m].
     """
     triangles = [np.empty((0, 3, 3))]
     for axis in range(3):
