@@ -357,7 +357,10 @@ class Analysis(checked.Shown):
     @cached_property
     def sensitivity(self) -> SensitivityReport | None:
         """What the choice of a rope for all cables rests on; None without one."""
-        return sensitivity_report(self.study, self.selection, self.assignment.rope)
+        rope, result, selection = self.assignment.rope, self.selection, self.study.selection
+        if rope is None or result is None or selection is None:
+            return None
+        return sensitivity_report(result, rope, selection.safety_factor)
 
     @cached_property
     def group_slopes(self) -> tuple[Sensitivities, ...]:

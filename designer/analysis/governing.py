@@ -250,16 +250,8 @@ def modes_at(
 ) -> PlatformModes | None:
     """Return the modes about an equilibrium (); None without it, known inertia or a mode.
 
-    Parameters
-    ----------
-    statics : Statics
-        The equilibrium ().
-    body : Platform
-        What is accelerated.
-    density : float or array (n_cables,)
-        Linear density of the cables, with what moves with them [kg/m].
-    name, load_case : str
-        As in `PlatformModes`.
+    ``body`` is what is accelerated; ``density`` (n_cables,) is that of the cables, with what moves
+    with them [kg/m].
     """
     if not (statics.is_solved and knows_inertia(statics.robot, body)):
         return None

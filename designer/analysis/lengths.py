@@ -71,8 +71,8 @@ class Lengths(checked.Shown):
         beyond = is_solved & ~self.holds
         yield from named_rows(~is_solved, "not held, see the verdict")
         if beyond.any():
-            used = f"{self.utilisation[beyond].max():.1%}"
-            yield from named_rows(beyond, f"beyond the allowable tension, up to {used} of it")
+            share = f"{self.utilisation[beyond].max():.1%}"
+            yield from named_rows(beyond, f"beyond the allowable tension, up to {share} of it")
         yield from named_rows(self.outside, "outside the region that the study asks for")
 
     def to_csv(self, names: Sequence[str], values: FloatArray) -> str:
@@ -160,7 +160,7 @@ def poses_of(
         rows = length_m[first : first + _ROWS_AT_ONCE]
         equilibria = find_equilibria(robot, cable.cable, rows, starts, with_unstable=True)
         statics, is_stable = equilibria.found.statics, equilibria.found.is_stable
-        used = (statics.cable_tension_N / cable.cable.allowable_tension_N).max(axis=-1)
+        utilisation = (statics.cable_tension_N / cable.cable.allowable_tension_N).max(axis=-1)
         for row, which in enumerate(equilibria.which):
             numbers, start = np.unique(which, return_index=True)
             start = start[numbers >= 0]
@@ -168,7 +168,7 @@ def poses_of(
             place = Poses(statics.poses.position_m[row], statics.poses.rotations[row])
             piece = (np.full(len(start), first + row), place.part(start).place)
             figures = statics.exit_tension_N[row, start], is_stable[row, start]
-            pieces.append((*piece, *figures, used[row, start] <= _FULL))
+            pieces.append((*piece, *figures, utilisation[row, start] <= _FULL))
         advance(len(rows))
     return FoundPoses(cable, len(length_m), *map(np.concatenate, zip(*pieces, strict=True)))
 

@@ -96,9 +96,9 @@ class PathCase:
     @cached_property
     def power_W(self) -> FloatArray:
         """Of each motor, negative where the load drives it (n_instants, n_cables) [W]."""
-        given = -self.drum_tension_N * self.drum_speed_m_per_s
+        winch_W = -self.drum_tension_N * self.drum_speed_m_per_s
         efficiency = self.winches.efficiency
-        return np.where(given > 0.0, given / efficiency, given * efficiency)
+        return np.where(winch_W > 0.0, winch_W / efficiency, winch_W * efficiency)
 
     @cached_property
     def torque_Nm(self) -> FloatArray:

@@ -77,10 +77,10 @@ def _criteria(loads: Sequence[CaseLoads]) -> list[Criterion]:
 
     def sizes(loaded: Loaded, statics: Statics) -> FloatArray:
         if not last or last[0][0] is not statics:
-            every = sizes_N(statics)
+            of_all = sizes_N(statics)
             if loaded.lost_cable is not None:
-                every = np.insert(every, loaded.lost_cable - 1, np.nan, axis=-2)
-            last[:] = [(statics, every)]
+                of_all = np.insert(of_all, loaded.lost_cable - 1, np.nan, axis=-2)
+            last[:] = [(statics, of_all)]
         return last[0][1]
 
     def criterion(mast: int, extreme: str) -> Criterion:

@@ -11,7 +11,7 @@ import numpy as np
 
 from designer.analysis.findings import neighbours_utilisation
 from designer.analysis.pose import PoseAnalysis
-from designer.grades.grade import TRUST_MEANING
+from designer.grades.grade import TRUST_MEANING, Size
 from designer.model.cable import Cable, Cables, Material
 from designer.model.load_case import STATIC
 from designer.model.robot import Robot
@@ -32,7 +32,6 @@ from designer.selection.groups import GroupChoice
 from designer.selection.reeving import drum_of, sheave_ratio_of, spooling_of
 from designer.selection.result import SelectionResult
 from designer.sizing.newton import size_poses
-from designer.statics.free_motion import FreeMotion
 from designer.study import Selection, Study
 from designer.workspace.demand import tension_demand
 from designer.workspace.sweep import WorkspaceMap
@@ -97,13 +96,14 @@ def requirements_of(analysis: Analysis) -> tuple[Requirement, ...]:
     pose, survey = analysis.pose, analysis.workspace
     assignment, needs, design = analysis.assignment, analysis.needs, analysis.qualities
     requirements: list[Requirement] = []
+    free_motion = "" if analysis.free_motion is None else analysis.free_motion.clause
     if pose is not None:
-        requirements.append(_pose(pose, analysis.free_motion))
+        requirements.append(_pose(pose, free_motion))
     if needs:
         requirements += map(_need, needs)
     elif survey is not None:
         material = built.material(study.material)
-        requirements.append(_workspace(built.robot, material, survey, analysis.free_motion))
+        requirements.append(_workspace(built.robot, material, survey, free_motion))
     if assignment.rope is not None:
         requirements += assignment.rope.requirements
     elif study.selection is not None and assignment.has_groups:
@@ -134,7 +134,7 @@ def terms_of(analysis: Analysis) -> Terms:
 def _not_asked(study: Study, moves: bool) -> Iterator[str]:
     """Yield which loads and losses of strength a study says nothing of."""
     cases, selection = study.load_cases, study.selection
-    given = {entry.field for entry in study.source.entries if entry.given != "default"}
+    stated = {entry.field for entry in study.source.entries if entry.given != "default"}
     loads = {
         "wind": any(case.wind is not None for case in cases),
         "dynamics": moves
@@ -147,7 +147,7 @@ def _not_asked(study: Study, moves: bool) -> Iterator[str]:
     if selection is None:
         return
     shares = {selection.termination_efficiency, *(case.termination_efficiency for case in cases)}
-    if "selection.termination_efficiency" not in given and shares <= {None, 1.0}:
+    if "selection.termination_efficiency" not in stated and shares <= {None, 1.0}:
         yield "end fittings"
     if selection.sheave_diameter_m is None and study.robot.winches.reeving_efficiency == 1.0:
         yield "sheaves"
@@ -172,14 +172,15 @@ def _conditions(analysis: Analysis) -> Iterator[Condition]:
             reasons.append(f"its modulus is {within}: at an end of that this fails: {titles}")
             certified.append("modulus")
         if reasons:
-            alone = not analysis.assignment.has_groups
-            beside, utilisation = neighbours_utilisation(rope) if alone else ([], math.nan)
-            *first, last = certified
-            figures = f"{', '.join(first)} and {last}" if first else last
+            neighbours: list[Size] = []
+            utilisation = math.nan
+            if not analysis.assignment.has_groups:
+                neighbours, utilisation = neighbours_utilisation(rope)
+            figures = " and ".join(filter(None, [", ".join(certified[:-1]), certified[-1]]))
             yield Condition(
                 f"a certificate of {figures} of {rope.label}",
                 "; ".join(reasons),
-                tuple(size.id for size in beside),
+                tuple(size.id for size in neighbours),
                 utilisation,
             )
 
@@ -229,7 +230,7 @@ def _stretched(assignment: Assignment, cable: Cable, sign: float) -> Cable:
     return at_end(assignment.ropes[0], cable)
 
 
-def _pose(pose: PoseAnalysis, free: FreeMotion | None) -> Requirement:
+def _pose(pose: PoseAnalysis, free_motion: str) -> Requirement:
     statics = pose.sizing.statics
     verdict = Verdict(int(statics.verdict))
     return Requirement(
@@ -240,12 +241,12 @@ def _pose(pose: PoseAnalysis, free: FreeMotion | None) -> Requirement:
         state=verdict.state,
         load_case=STATIC.name,
         place=statics.poses.place,
-        remark="" if statics.is_solved else verdict.clause if free is None else free.clause,
+        remark="" if statics.is_solved else free_motion or verdict.clause,
     )
 
 
 def _workspace(
-    robot: Robot, material: Material, survey: WorkspaceMap, free: FreeMotion | None
+    robot: Robot, material: Material, survey: WorkspaceMap, free_motion: str
 ) -> Requirement:
     state, remark, pose = State.HOLDS, "", survey.infeasible_pose
     if not survey.is_feasible:
@@ -257,7 +258,7 @@ def _workspace(
         if unserved:  # of these one that proves that a pose is not held
             worst = next((v for v in unserved if v.is_proved), unserved[0])
             state, remark = worst.state, worst.clause
-        remark = remark if free is None else free.clause
+        remark = free_motion or remark
     return Requirement(
         id="workspace",
         title="Configured family",
@@ -329,7 +330,7 @@ def _no_ropes(groups: GroupChoice) -> Requirement:
 def _of_groups(selection: Selection, assignment: Assignment) -> Iterator[Requirement]:
     """Yield what groups of cables are used to."""
     verification = assignment.verification
-    for group, rope, used, place in zip(
+    for group, rope, utilisation, place in zip(
         assignment.groups,
         assignment.ropes,
         verification.utilisation,
@@ -342,12 +343,12 @@ def _of_groups(selection: Selection, assignment: Assignment) -> Iterator[Require
             title=f"Breaking load, {group.name}",
             formula=f"T ≤ η F / S; S = {selection.safety_factor:g}",
             source=f"Noble Denton 0027/ND, 7.6 to 7.8; {selection.factor_source}",
-            state=State.HOLDS if used <= 1.0 else State.FAILS,
+            state=State.HOLDS if utilisation <= 1.0 else State.FAILS,
             load_case=STATIC.name,
-            demand=float(used) * allowable_N,
+            demand=float(utilisation) * allowable_N,
             capacity=allowable_N,
             unit="N",
-            utilisation=float(used),
+            utilisation=float(utilisation),
             place=place,
         )
         yield from sheave_ratio_of(rope.grade, rope.size, selection)

@@ -18,6 +18,7 @@ from designer.arrays import FloatArray
 from designer.documents.plain import RESULT_FORMAT, Json, csv_text, is_requested, plain, record
 from designer.model.space import named_place, rotation_vector_of
 from designer.model.verdict import Verdict
+from designer.model.workspace import Workspace
 from designer.proof.prove import Proof
 from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate
@@ -180,45 +181,49 @@ def _pose(study: Study, pose: PoseAnalysis | None, with_rest: bool) -> Json | No
 
 
 def _workspace(analysis: Analysis) -> Json | None:
-    if analysis.workspace is None:
+    survey, is_point_mass = analysis.workspace, analysis.study.robot.is_point_mass
+    if survey is None:
         return None
     qualities: Json = dict.fromkeys(_OF_THE_CHOICE)  # None where they were not looked at
     for name in _OF_THE_CHOICE:
         if analysis.is_read(f"workspace.{name}") and analysis.qualities is not None:
             qualities[name] = getattr(analysis.qualities, name)
-    survey = qualities["interference"]
+    clearances = qualities["interference"]
     return {
-        **record(analysis.workspace),
-        "orientations": _orientations(analysis.study),
+        **record(survey),
+        "orientations": None if is_point_mass else _orientations(survey.workspace),
         "section_m": analysis.section_m,
         "servable": analysis.servable if analysis.is_read("workspace.servable") else None,
         **qualities,
-        "interference": survey and _interference(survey),
+        "interference": clearances and _interference(clearances),
     }
 
 
-def _orientations(study: Study) -> Json | None:
-    """Return which orientations were tried at each position; None of a point mass."""
-    if study.workspace is None or study.robot.is_point_mass:
-        return None
-    orientations = study.workspace.orientations
-    law = orientations.law
-    return {
-        "rotation_vectors": orientations.turns_rad if law is None else None,
+def _orientations(workspace: Workspace) -> Json:
+    """Return which orientations were tried at each position."""
+    orientations = workspace.orientations
+    angles, law = orientations.turns_rad, orientations.law
+    row: Json = {
+        "rotation_vectors": angles,
         "range": orientations.range_rad,
-        "law": None if law is None else law.words,
-        "table": None if law is None or law.rows is None else np.hstack(law.rows),
+        "law": None,
+        "table": None,
     }
+    if law is not None:
+        table = None if law.rows is None else np.hstack(law.rows)
+        row |= {"rotation_vectors": None, "law": law.words, "table": table}
+    return row
 
 
 def _interference(survey: Interference) -> Json:
     worst = survey.worst
+    nearest: Json = dict.fromkeys(("min_distance_m", "error_m", "pair", "pose"))
+    if worst is not None:
+        figures = worst.distance_m, worst.error_m, worst.names, worst.place[:3]
+        nearest = dict(zip(nearest, figures, strict=True))
     return {
         "clearance_m": survey.clearance_m,
-        "min_distance_m": None if worst is None else worst.distance_m,
-        "error_m": None if worst is None else worst.error_m,
-        "pair": None if worst is None else worst.names,
-        "pose": None if worst is None else worst.place[:3],
+        **nearest,
         "samples": survey.samples,
         "violating": survey.violating,
         "violated": survey.is_violated,
@@ -227,17 +232,13 @@ def _interference(survey: Interference) -> Json:
 
 def load_cases_dict(analysis: Analysis) -> Json:
     """Return each load case, each requirement, and the governing pose, None where no rope is."""
-    study, chosen = analysis.study, analysis.chosen
-    checks = analysis.requirements
-    if chosen is None or study.selection is None:
-        needs = [
-            _case(case.governing) | {"diameter_m": case.diameter_m, "holds": case.is_held}
-            for case in analysis.needs
-        ]
-        return {"load_cases": needs, "checks": checks, "governing": None}
+    rows = [_case(case) for case in analysis.cases]
+    if analysis.chosen is None:
+        for row, need in zip(rows, analysis.needs, strict=True):
+            row |= {"diameter_m": need.diameter_m, "holds": need.is_held}
     return {
-        "load_cases": [_case(case) for case in chosen.cases],
-        "checks": checks,
+        "load_cases": rows,
+        "checks": analysis.requirements,
         "governing": analysis.governing,
     }
 
@@ -245,11 +246,10 @@ def load_cases_dict(analysis: Analysis) -> Json:
 def _case(case: CaseResult) -> Json:
     verification, loaded, loss = case.verification, case.loaded, case.loss
     place = verification.worst_place
-    after = {
-        "fate": None if loss is None else Fate(int(loss.fate[0])).label,
-        "rest": None if loss is None else loss.rest.position_m[0],
-        "moved_m": None if loss is None else loss.moved_m[0],
-    }
+    after: Json = {"fate": None, "rest": None, "moved_m": None}
+    if loss is not None:
+        fate = Fate(int(loss.fate[0])).label
+        after = {"fate": fate, "rest": loss.rest.position_m[0], "moved_m": loss.moved_m[0]}
     figures = {
         "name": case.case.name,
         "holds": verification.holds,
@@ -393,10 +393,10 @@ def candidates_csv(selection: SelectionResult) -> str:
             row |= {_LISTS.get(name, name).format(k): part for k, part in parts}
         rows.append(row)
     rows += [
-        {"grade": left.grade.id, "size_id": size.id, "diameter_m": size.diameter_m}
-        | {"standing": "not_tried", "why": left.reason, "trust": left.grade.trust}
-        for left in selection.not_tried
-        for size in left.sizes
+        {"grade": exclusion.grade.id, "size_id": size.id, "diameter_m": size.diameter_m}
+        | {"standing": "not_tried", "why": exclusion.reason, "trust": exclusion.grade.trust}
+        for exclusion in selection.not_tried
+        for size in exclusion.sizes
     ]
     names = list(rows[0]) if rows else ["grade", "size_id"]
     return csv_text([names, *([row.get(name) for name in names] for row in rows)])

@@ -39,7 +39,7 @@ from designer.selection.result import SelectionResult
 from designer.statics.geometry import load_wrench_N
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.slopes import Slopes, utilisation_slopes
-from designer.study import CableGroup, Study
+from designer.study import CableGroup
 from designer.workspace.demand import tension_demand
 from designer.workspace.refine import LIGHT, refine
 
@@ -83,7 +83,7 @@ class Sensitivities:
     #: efficiency of the rope, modulus, mass of the rope, and region (metres by which its sides move
     #: outward). With ropes for groups ``modulus_`` and ``linear_mass_`` of the rope of each group,
     #: also of those that carry less.
-    each: tuple[Sensitivity, ...]
+    inputs: tuple[Sensitivity, ...]
     #: (n_cables, 3) slope in each exit point, base frame [1/m]; NaN where there is none
     exit_points_per_m: FloatArray
     method: str = "adjoint"  #: ``adjoint`` or ``differences``
@@ -93,7 +93,7 @@ class Sensitivities:
 
     def of(self, name: str) -> Sensitivity:
         """Return one of them by its name."""
-        return next(slope for slope in self.each if slope.input == name)
+        return next(slope for slope in self.inputs if slope.input == name)
 
 
 _Mounted = tuple[str, IntArray, Loaded]
@@ -143,21 +143,20 @@ def _of_group(robot: Robot, workspace: Workspace, assignment: Assignment, g: int
     ]
     statics = solve_sagging(robot, Poses.at(assignment.verification.worst_place[g, None]), cables)
     of_group, rope = ropes[g][1], assignment.ropes[g]
-    used = statics.cable_tension_N[0, of_group] / rope.cable.allowable_tension_N
-    cable = int(of_group[used.argmax()])
+    utilisation = statics.cable_tension_N[0, of_group] / rope.cable.allowable_tension_N
+    cable = int(of_group[utilisation.argmax()])
     ties = utilisation_slopes(statics, cables.allowable_tension_N, cable + 1)
     slopes, exits = _by_adjoint(ties, ropes, statics.poses, workspace.region)
     if slopes and workspace.orientations.law is not None:
         slopes["region"] = np.nan  # the rotation that goes with it is not among the slopes
     figures = rope.size.minimum_breaking_load_N, rope.efficiency
-    named = _named(float(used.max()), figures, ropes, slopes)
+    named = _named(float(utilisation.max()), figures, ropes, slopes)
     why = (
         "Cables of other groups are used more there, or the internal forces that are best "
         "leave a choice, so that the utilisation has no slope."
     )
-    return Sensitivities(
-        float(used.max()), named, exits, why_not="" if ties else why, group=assignment.groups[g]
-    )
+    largest, why = float(utilisation.max()), "" if ties else why
+    return Sensitivities(largest, named, exits, why_not=why, group=assignment.groups[g])
 
 
 def _by_adjoint(
@@ -359,17 +358,18 @@ def payload_reserve(cases: Sequence[CaseResult]) -> Reserve | None:
     return _end(cases, heavier, (1.0, _MAX_PAYLOAD, 0.1), is_moving=False)
 
 
-def region_reserve(cases: Sequence[CaseResult], region: Region) -> Reserve | None:
+def region_reserve(cases: Sequence[CaseResult]) -> Reserve | None:
     """Return by how much the sides of the region may move outward; None where none was found.
 
     Heights stay. Load cases with a region of their own do not count; only some regions have sides.
     """
     moving = [case for case in cases if case.case.region is None]
-    if not region.has_sides or not moving:
+    if not moving or not moving[0].workspace.region.has_sides:
         return None
 
     def wider(case: CaseResult, margin_m: float) -> tuple[Loaded, Workspace]:
-        return case.loaded, replace(case.workspace, region=region.grown(margin_m))
+        region = case.workspace.region.grown(margin_m)
+        return case.loaded, replace(case.workspace, region=region)
 
     size = float(np.ptp(moving[0].loaded.robot.exit_points_m, axis=0).max())
     return _end(moving, wider, (0.0, _MAX_MARGIN * size, 0.02 * size), is_moving=True)
@@ -414,8 +414,8 @@ def _end(
         if value is None:
             return None
         highest = max(poses, key=lambda pose: utilisation(pose, value))
-        near = dict.fromkeys(pose.case for pose in poses if utilisation(pose, value) > _NEAR)
-        candidates = [searched(case, value) for case in near]
+        close = dict.fromkeys(pose.case for pose in poses if utilisation(pose, value) > _NEAR)
+        candidates = [searched(case, value) for case in close]
         overloaded = [pose for pose in candidates if utilisation(pose, value) > 1.0 + _FULL]
         if not overloaded:
             highest_found = max(utilisation(pose, value) for pose in (*poses, *candidates))
@@ -476,9 +476,9 @@ def first_failures(case: CaseResult) -> tuple[FirstFailure, ...]:
     places = border.samples_m(np.random.default_rng(0), _PER_EDGE, _PER_FACE)
     places = np.concatenate([border.landmarks_m(), places])
     leaves = [~region.contains(places + _OUTSIDE * reach * along) for _, along in directions]
-    way = np.repeat(np.arange(len(directions)), [mask.sum() for mask in leaves])
+    direction_of = np.repeat(np.arange(len(directions)), [mask.sum() for mask in leaves])
     start = np.concatenate([places[mask] for mask in leaves])
-    along = np.array([along for _, along in directions])[way]
+    along = np.array([along for _, along in directions])[direction_of]
 
     def solve(position_m: FloatArray) -> Statics:
         rotations = np.broadcast_to(rotation, (len(position_m), len(rotation)))
@@ -490,18 +490,19 @@ def first_failures(case: CaseResult) -> tuple[FirstFailure, ...]:
         is_overloaded = statics.largest_tension_N > loaded.cable.allowable_tension_N
         return np.asarray(~statics.is_solved | is_overloaded)
 
-    distance = _first_distances_m(fails, way, reach)
+    distance = _first_distances_m(fails, direction_of, reach)
     failures = []
     for k, (name, direction) in enumerate(directions):
-        rows = np.flatnonzero((way == k) & np.isfinite(distance))
-        far, place, why = np.nan, np.full(3, np.nan), ""
+        rows = np.flatnonzero((direction_of == k) & np.isfinite(distance))
+        nearest_m, place, why = np.nan, np.full(3, np.nan), ""
         if len(rows):
             nearest = rows[distance[rows].argmin()]
-            far, place = float(distance[nearest]), start[nearest] + distance[nearest] * direction
+            nearest_m = float(distance[nearest])
+            place = start[nearest] + nearest_m * direction
             statics = solve(place[None])
             is_solved, verdict = statics.is_solved[0], Verdict(int(statics.verdict[0]))
             why = "overloaded" if is_solved else verdict.label
-        failures.append(FirstFailure(name, direction, far, place, why, reach))
+        failures.append(FirstFailure(name, direction, nearest_m, place, why, reach))
     return tuple(failures)
 
 
@@ -520,32 +521,29 @@ def _directions(region: Region, loaded: Loaded) -> list[tuple[str, FloatArray]]:
 
 
 def _first_distances_m(
-    fails: Callable[[IntArray, FloatArray], BoolArray], way: IntArray, reach_m: float
+    fails: Callable[[IntArray, FloatArray], BoolArray], direction_of: IntArray, reach_m: float
 ) -> FloatArray:
-    """March out along all ways (n,) of each direction until one fails, and halve the last step.
+    """March out along all ways (n,) of each direction until one fails, and bisect the last step.
 
-    Returns
-    -------
-    array (n,)
-        Where the first of a direction fail [m]; infinite for the others.
+    Returned is where the first of each direction fail (n,) [m]; infinite for the others.
     """
-    low, high = np.zeros(len(way)), np.full(len(way), np.inf)
-    going = np.arange(len(way))
-    for far in reach_m * (np.arange(1, _STEPS + 1) / _STEPS) ** 2:
-        hit = fails(going, np.full(len(going), far))
-        high[going[hit]] = far
-        going = going[~np.isin(way[going], way[going[hit]])]
-        if not len(going):
+    low, high = np.zeros(len(direction_of)), np.full(len(direction_of), np.inf)
+    active = np.arange(len(direction_of))
+    for step_m in reach_m * (np.arange(1, _STEPS + 1) / _STEPS) ** 2:
+        failed = fails(active, np.full(len(active), step_m))
+        high[active[failed]] = step_m
+        active = active[~np.isin(direction_of[active], direction_of[active[failed]])]
+        if not len(active):
             break
-        low[going] = far
+        low[active] = step_m
     rows = np.flatnonzero(np.isfinite(high))
     for _ in range(_BISECTIONS if len(rows) else 0):
         middle = 0.5 * (low[rows] + high[rows])
-        hit = fails(rows, middle)
-        high[rows[hit]], low[rows[~hit]] = middle[hit], middle[~hit]
-        least = np.full(way.max() + 1, np.inf)
-        np.minimum.at(least, way[rows], high[rows])
-        is_first = low[rows] <= least[way[rows]]
+        failed = fails(rows, middle)
+        high[rows[failed]], low[rows[~failed]] = middle[failed], middle[~failed]
+        least = np.full(direction_of.max() + 1, np.inf)
+        np.minimum.at(least, direction_of[rows], high[rows])
+        is_first = low[rows] <= least[direction_of[rows]]
         high[rows[~is_first]] = np.inf  # what fails farther out for sure is not the first
         rows = rows[is_first]
     return high
@@ -591,18 +589,19 @@ class SensitivityReport:
 
 
 def sensitivity_report(
-    study: Study, selection: SelectionResult | None, rope: Candidate | None
-) -> SensitivityReport | None:
-    """Return what the choice of a rope for all cables rests on; None without one."""
-    if selection is None or rope is None or study.selection is None or study.workspace is None:
-        return None
+    selection: SelectionResult, rope: Candidate, safety_factor: float
+) -> SensitivityReport:
+    """Return what the choice of a rope for all cables rests on.
+
+    ``safety_factor`` is that of the study, for load cases without their own.
+    """
     breaking_load_N = rope.size.minimum_breaking_load_N
     return SensitivityReport(
         governing=rope.governing,
         sensitivities=sensitivities(rope.governing, rope.efficiency, breaking_load_N),
         payload=payload_reserve(rope.cases),
-        region=region_reserve(rope.cases, study.workspace.region),
-        sizes=tuple(_sizes(selection, rope, study.selection.safety_factor)),
+        region=region_reserve(rope.cases),
+        sizes=tuple(_sizes(selection, rope, safety_factor)),
         failures=first_failures(rope.governing),
     )
 
@@ -649,7 +648,7 @@ def sensitivity_dict(report: SensitivityReport | None, groups: Sequence[Sensitiv
 
 def _sensitivities(of_ropes: Iterable[Sensitivities]) -> Iterator[Json]:
     for of_rope in of_ropes:
-        rows: list[Json] = [asdict(sensitivity) for sensitivity in of_rope.each]
+        rows: list[Json] = [asdict(sensitivity) for sensitivity in of_rope.inputs]
         for (cable, axis), slope in np.ndenumerate(of_rope.exit_points_per_m):
             name = f"exit_point_{cable + 1}_{'xyz'[axis]}"
             rows.append(asdict(Sensitivity(name, math.nan, "m", float(slope), math.nan)))

@@ -54,7 +54,7 @@ from designer.workspace.demand import tension_demand
 from designer.workspace.refine import LIGHT, Effort, refine
 
 CONFIDENCE = 0.95
-SCRAMBLES, _DEGREE, _LEAST_POINTS = 8, 3, 16
+SCRAMBLES, _DEGREE, _MIN_POINTS = 8, 3, 16
 _MODULUS_DRAWS, _MODULUS_DRAWS_SLOW = 1024, 256  # where only a borrowed modulus is uncertain
 _PROBES, _END = 32, 1e-3  # random probes; share of a distribution beyond which ends are not probed
 _TINY = 1e-15  # nearest share to 0 and 1: there a normal deviation has no end
@@ -64,7 +64,7 @@ _CHUNK = 256
 _NEAR = 0.99  # of a draw's largest utilisation: from where on a pose may govern it
 _STARTS, _STARTS_SETTLING = 24, 2
 _ELSEWHERE = 256  # samples that tell whether anything is served where all kept poses are left out
-_MOST_ROUNDS, _CHECKED, _CHECKED_SLOWLY = 3, 6, 2
+_MAX_ROUNDS, _CHECKED, _CHECKED_SLOWLY = 3, 6, 2
 _WORSE = 1e-6  # relative: below what a search tells apart
 _GLANCE = Effort(  # how hard a robot is searched that is slow to solve
     per_edge=8, per_face=16, inside=64, starts=2, finalists=1, revisited=0, trials=6,
@@ -277,13 +277,13 @@ def may_govern(
             if loaded.words != case.loaded.words:
                 yield GoverningCandidates(loaded, case.workspace, worst)
 
-    every = [pose for case in cases for pose in of_case(case, rope_in(case.case))]
-    used = [pose.utilisation(probes) for pose in every]
-    highest = np.maximum.reduce([values.max(axis=1) for values in used])[:, None]
-    near = [(values >= _NEAR * highest).any(axis=0) for values in used]
+    candidates = [pose for case in cases for pose in of_case(case, rope_in(case.case))]
+    utilisation = [pose.utilisation(probes) for pose in candidates]
+    highest = np.maximum.reduce([values.max(axis=1) for values in utilisation])[:, None]
+    governs = [(values >= _NEAR * highest).any(axis=0) for values in utilisation]
     return [
         replace(pose, places=pose.places[is_near])
-        for pose, is_near in zip(every, near, strict=True)
+        for pose, is_near in zip(candidates, governs, strict=True)
         if is_near.any()
     ]
 
@@ -298,39 +298,39 @@ class Checked:
 
 
 def searched(
-    poses: list[GoverningCandidates], draws: Draws, used: FloatArray
+    poses: list[GoverningCandidates], draws: Draws, utilisation: FloatArray
 ) -> tuple[list[GoverningCandidates], FloatArray, Checked]:
     """Search the region in telling draws; what is worse than the known poses joins them.
 
     Load cases on kept lengths, which take long to follow, are left out of the search.
     """
     survey = Checked()
-    for turn in range(1, _MOST_ROUNDS + 1):
+    for iteration in range(1, _MAX_ROUNDS + 1):
         is_slow = not all(has_fast_solver(pose.loaded.robot) for pose in poses)
-        rows = _telling(used)[: _CHECKED_SLOWLY if is_slow else _CHECKED]
-        found = [_worse(poses, draws.part([row]), float(used[row]), is_slow) for row in rows]
-        exceeding = [pair for pair in found if pair is not None]
-        survey = Checked(len(rows), turn, max((more for _, more in exceeding), default=0.0))
+        rows = _telling(utilisation)[: _CHECKED_SLOWLY if is_slow else _CHECKED]
+        worse = [_worse(poses, draws.part([k]), float(utilisation[k]), is_slow) for k in rows]
+        exceeding = [pair for pair in worse if pair is not None]
+        survey = Checked(len(rows), iteration, max((more for _, more in exceeding), default=0.0))
         if not exceeding:
             break
         new = [pose for pose, _ in exceeding]
-        poses, used = [*poses, *new], np.maximum(used, largest(new, draws))
-    return poses, used, survey
+        poses, utilisation = [*poses, *new], np.maximum(utilisation, largest(new, draws))
+    return poses, utilisation, survey
 
 
-def _telling(used: FloatArray) -> list[int]:
+def _telling(utilisation: FloatArray) -> list[int]:
     """Return the draws nearest to 100 %, and the largest, least, quartile, median and first."""
-    finite = np.flatnonzero(np.isfinite(used))
+    finite = np.flatnonzero(np.isfinite(utilisation))
     if not len(finite):
         return []
-    order = finite[np.argsort(used[finite], kind="stable")]
-    nearest = finite[np.abs(used[finite] - 1.0).argmin()]
+    order = finite[np.argsort(utilisation[finite], kind="stable")]
+    nearest = finite[np.abs(utilisation[finite] - 1.0).argmin()]
     rows = [nearest, order[-1], order[0], *order[[len(order) // 4, len(order) // 2]], finite[0]]
     return [int(row) for row in dict.fromkeys(rows)]
 
 
 def _worse(
-    poses: Sequence[GoverningCandidates], draw: Draws, used: float, is_slow: bool
+    poses: Sequence[GoverningCandidates], draw: Draws, utilisation: float, is_slow: bool
 ) -> tuple[GoverningCandidates, float] | None:
     """Return a pose that a draw uses more than the known ones, and by how much."""
     governing = max(poses, key=lambda pose: float(pose.utilisation(draw).max()))
@@ -342,9 +342,9 @@ def _worse(
 
     effort = _GLANCE if is_slow else LIGHT
     (worst,) = refine(governing.workspace.space, demand, governing.places, effort)
-    if not worst.demand > used * (1.0 + _WORSE):
+    if not worst.demand > utilisation * (1.0 + _WORSE):
         return None
-    return replace(governing, places=worst.place[None]), worst.demand - used
+    return replace(governing, places=worst.place[None]), worst.demand - utilisation
 
 
 @dataclass(frozen=True, slots=True)
@@ -578,21 +578,21 @@ def uncertainty_of(
     ends = np.full((2 * width + 1, width), 0.5)
     for k in range(width):
         ends[2 * k : 2 * k + 2, k] = _END, 1.0 - _END
-    some = np.random.default_rng(uncertainty.seed + 1).random((_PROBES, width))
-    probes = draws_at(spreads, robot, ends if width == 1 else np.concatenate([ends, some]))
+    random = np.random.default_rng(uncertainty.seed + 1).random((_PROBES, width))
+    probes = draws_at(spreads, robot, ends if width == 1 else np.concatenate([ends, random]))
 
     def poses_of(size: Candidate) -> list[GoverningCandidates]:
         def rope_in(case: LoadCase) -> Cable:
             assert study.selection is not None
             allowance = Allowance.of(study.selection.under(case), robot.winches)
             cable = built.of_products.cable(allowance.cable(size.grade, size.size))
-            found = next(r for r in (*size.cases, *chosen.cases) if r.case is case)
-            return cable.at_tension(found.verification.max_tension_N)
+            shares_by_name = next(r for r in (*size.cases, *chosen.cases) if r.case is case)
+            return cable.at_tension(shares_by_name.verification.max_tension_N)
 
         return may_govern(chosen.cases, rope_in, probes)
 
     poses = poses_of(chosen)
-    alone = tuple(Share(name, 1.0, (1.0, 1.0), 1.0, (1.0, 1.0)) for name in spreads)
+    single = tuple(Share(name, 1.0, (1.0, 1.0), 1.0, (1.0, 1.0)) for name in spreads)
     if stated is None:
         if any(pose.loaded.keeps_lengths for pose in poses):
             return None
@@ -601,28 +601,26 @@ def uncertainty_of(
             chosen, largest(poses, drawn(_MODULUS_DRAWS if is_fast else _MODULUS_DRAWS_SLOW))
         )
         n_poses = sum(len(pose.places) for pose in poses)
-        return UncertaintyAnalysis(spreads, odds, (odds,), alone, uncertainty.seed, n_poses)
+        return UncertaintyAnalysis(spreads, odds, (odds,), single, uncertainty.seed, n_poses)
     points = 0
     if len(spreads) > 1:
-        points = max(
-            2 ** ((uncertainty.samples // (4 * SCRAMBLES)).bit_length() - 1), _LEAST_POINTS
-        )
-    draws, around, shares, why = drawn(uncertainty.samples), selection.beside(chosen), alone, ""
+        points = max(2 ** ((uncertainty.samples // (4 * SCRAMBLES)).bit_length() - 1), _MIN_POINTS)
+    draws, around, shares, why = drawn(uncertainty.samples), selection.beside(chosen), single, ""
     steps = len(draws) * len(around) + SCRAMBLES * points * (len(spreads) + 2)
     with reporter.task("uncertainty", steps) as advance:
-        poses, used, checked = searched(poses, draws, largest(poses, draws, advance))
-        odds = SizeOdds(chosen, used)
+        poses, utilisation, checked = searched(poses, draws, largest(poses, draws, advance))
+        odds = SizeOdds(chosen, utilisation)
         sizes = tuple(
             odds if size is chosen else SizeOdds(size, largest(poses_of(size), draws, advance))
             for size in around
         )
         if points:
             try:
-                found = shares_of(
+                shares_by_name = shares_of(
                     lambda unit: largest(poses, draws_at(spreads, robot, unit), advance),
                     {str(name): at for name, at in columns.items()}, points, uncertainty.seed,
                 )  # fmt: skip
-                shares = tuple(sorted(found, key=lambda share: -share.first_order))
+                shares = tuple(sorted(shares_by_name, key=lambda share: -share.first_order))
             except ValueError as error:
                 shares, why = (), str(error)
     return UncertaintyAnalysis(

@@ -77,16 +77,7 @@ def verify(name: str, material: Material, sizing: Sizing) -> list[SecondAnswer]:
 
     The optimiser is SciPy's SLSQP on the unknowns of Riehl et al., ICRA 2010, section IV.C, or for
     more cables than degrees of freedom a sequence of convex programmes by Clarabel; neither knows
-    pulleys.
-
-    Parameters
-    ----------
-    name : str
-        What pose it is, such as ``worst pose``.
-    material : Material
-        The family of cables.
-    sizing : Sizing
-        Ours, of one pose.
+    pulleys. ``name`` tells which pose it is; ``sizing`` is ours, of that pose.
     """
     if not sizing.statics.is_solved:
         return []
@@ -124,22 +115,15 @@ def verify_cables(name: str, statics: Statics) -> SecondAnswer:
         np.broadcast_to(figure, statics.length_m.shape)
         for figure in (statics.weight_N_per_m, statics.axial_stiffness_N)
     )
-    rows = zip(
-        statics.free_length_m,
-        statics.force_x_N,
-        statics.force_z_N,
-        stiffness,
-        weight,
-        strict=True,
-    )
+    forces = statics.force_x_N, statics.force_z_N
+    rows = zip(statics.free_length_m, *forces, stiffness, weight, strict=True)
     ends = np.array([end_position_m(*map(float, cable)) for cable in rows])
     off = ends - np.stack([geometry.horizontal_distance_m, -geometry.drop_m], axis=-1)
-    farthest = float(np.hypot(*off.T).max())
     return SecondAnswer(
-        "quadrature of the cable equation",
-        f"distance of a cable's end from its attachment, {name}",
-        "m",
-        0.0,
-        farthest,
-        _SAME_END * float(statics.free_length_m.max()),
+        method="quadrature of the cable equation",
+        quantity=f"distance of a cable's end from its attachment, {name}",
+        unit="m",
+        ours=0.0,
+        theirs=float(np.hypot(*off.T).max()),
+        tolerance=_SAME_END * float(statics.free_length_m.max()),
     )

@@ -50,19 +50,11 @@ class Cover:
         return np.hstack([position, turn])
 
     def cut(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Cut boxes at the border of the region.
+        """Cut boxes (n, k) at the border of the region.
 
-        Parameters
-        ----------
-        low, high : array (n, k)
-            Boxes.
-
-        Returns
-        -------
-        low, high : array (n, k)
-            The smallest boxes around what is left; low above high where that is nothing.
-        corners : array (n, n_corners, 2)
-            Corners of what is left, first two coordinates; some stand there more than once.
+        Returned are low and high of the smallest boxes (n, k) around what remains, low above high
+        where that is nothing, and its corners (n, n_corners, 2) in the first two coordinates, some
+        more than once.
         """
         x, y = np.stack([low[:, :2], high[:, :2]], axis=-1).transpose(1, 0, 2)
         plan = np.stack([x[:, [0, 1, 1, 0]], y[:, [0, 0, 1, 1]]], axis=-1)
@@ -143,17 +135,7 @@ def _cut_at(plan: FloatArray, side: FloatArray) -> FloatArray:
 def border_m(cover: Cover, boxes: BoxEnds, others: BoxEnds) -> FloatArray:
     """Return the faces that boxes have in common with others, inside the region.
 
-    Parameters
-    ----------
-    cover : Cover
-        Whose coordinates they have.
-    ones, others : pair of array (n, 3)
-        Low and high corners of boxes that do not overlap.
-
-    Returns
-    -------
-    array (n_triangles, 3, 3)
-        Corners of triangles [m].
+    The boxes, in coordinates of the cover, do not overlap; the faces are triangles (n, 3, 3) [m].
     """
     triangles = [np.empty((0, 3, 3))]
     for axis in range(3):
@@ -259,8 +241,8 @@ class Encloser:
     def utilisation(self, places: FloatArray) -> FloatArray:
         """Return largest over allowable tension (n,) in places (n, 6); inf where none is found."""
         statics = solve_sagging(self._robot, Poses.at(places), self._cable)
-        used = statics.largest_tension_N / self._cable.allowable_tension_N
-        return np.where(statics.is_solved, used, np.inf)
+        utilisation = statics.largest_tension_N / self._cable.allowable_tension_N
+        return np.where(statics.is_solved, utilisation, np.inf)
 
     def bound(
         self, low: FloatArray, high: FloatArray, raised: FloatArray, level: float
@@ -313,7 +295,7 @@ class Encloser:
         load = np.repeat(self._robot.loads_N(), len(middle), axis=0)
         for point_m, pull_N in self._robot.turning_pulls_N:
             load[:, 3:] += np.cross(rotation @ point_m, pull_N)
-        turns, load_turns, bent = self._turns(middle, half, levers, rotation)
+        turns, load_turns, bent = self._rotation_slopes(middle, half, levers, rotation)
         boxes = Boxes(
             half=half,
             corners=corners - middle[:, None, :2],
@@ -337,23 +319,23 @@ class Encloser:
         )
         return out
 
-    def _turns(
+    def _rotation_slopes(
         self,
         middle: FloatArray,
         half: FloatArray,
         levers: FloatArray,
         rotation: FloatArray,
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return slopes of levers and of the load's moment with the turn, and how far others are.
+        """Return slopes of levers and of the load's moment with the rotation, and errors of these.
 
         The rotation is the exponential of a skew matrix, so that its derivative changes by no more
-        than the angle between two turns; a slope from the middle is the mean of derivatives on the
-        way, hence within half of that.
+        than the angle between two rotations; a slope from the middle is the mean of derivatives on
+        the way, hence within half of that.
         """
         count, n = levers.shape[:2]
         if middle.shape[1] == 3:
             return np.zeros((count, n, 3, 0)), np.zeros((count, 3, 0)), np.zeros((count, n + 1))
-        axes = _turning_axes(middle[:, 3:]).transpose(0, 2, 1) @ self._robot.upright.T
+        axes = _rotation_axes(middle[:, 3:]).transpose(0, 2, 1) @ self._robot.upright.T
         turns = np.cross(axes[:, None], levers[:, :, None])
         load_turns, moment = np.zeros_like(axes), 0.0
         for point_m, pull_N in self._robot.turning_pulls_N:
@@ -374,13 +356,13 @@ class Encloser:
         for d in np.flatnonzero(half.max(axis=0) > _ULPS * self._size):
             step = np.zeros_like(half)
             step[:, d] = half[:, d]
-            ahead, ahead_solved = self._solve(middle + step, raised)
+            after, after_solved = self._solve(middle + step, raised)
             behind, behind_solved = self._solve(middle - step, raised)
             # The smaller difference: where another branch begins on one side, that of the middle.
-            before, after = pull - behind, ahead - pull
+            before, after = pull - behind, after - pull
             change = np.where(np.abs(before) < np.abs(after), before, after)
             change = np.where(
-                (ahead_solved & behind_solved)[:, None] & (before * after > 0.0), change, 0.0
+                (after_solved & behind_solved)[:, None] & (before * after > 0.0), change, 0.0
             )
             largest_change = _MAX_FOLLOWED * pull
             follow[..., d] = np.clip(change, -largest_change, largest_change) / half[:, d, None]
@@ -422,7 +404,7 @@ def _pulls_of(statics: Statics, cable: Cable) -> FloatArray:
     return np.where(1e-3 * np.abs(D) > X, upright, level)
 
 
-def _turning_axes(rotation_vector: FloatArray) -> FloatArray:
+def _rotation_axes(rotation_vector: FloatArray) -> FloatArray:
     """Return J (n, 3, 3): the turn by rotation vector + d is that by J d after the former."""
     angle2 = np.einsum("ni,ni->n", rotation_vector, rotation_vector)[:, None, None]
     angle = np.sqrt(angle2)

@@ -254,9 +254,9 @@ class _BranchAndBound:
         if not sum(map(len, trials)):
             return
         places = encloser.cover.places(np.concatenate(trials))
-        used = encloser.utilisation(places)
-        if used.max() > self._found * _BETTER:
-            self._found, self._worst = float(used.max()), places[used.argmax()]
+        utilisation = encloser.utilisation(places)
+        if utilisation.max() > self._found * _BETTER:
+            self._found, self._worst = float(utilisation.max()), places[utilisation.argmax()]
 
     def _add(
         self, k: int, low: FloatArray, high: FloatArray, bound: FloatArray, raised: FloatArray

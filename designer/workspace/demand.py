@@ -110,8 +110,7 @@ def tension_demand(loaded: Loaded, hangs_below: HangsBelow, places: FloatArray) 
 
 def settled(loaded: Loaded, poses: Poses) -> CableLoss:
     """Return what becomes of poses (n_poses,) in a load case in which lengths are kept."""
-    kept = loaded.lost_cable, loaded.growth
-    return settle(loaded.robot, poses, loaded.cable, *kept)
+    return settle(loaded.robot, poses, loaded.cable, loaded.lost_cable, loaded.growth)
 
 
 def length_demand(statics: Statics, counts: BoolArray) -> FloatArray:

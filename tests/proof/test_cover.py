@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from designer.arrays import FloatArray
 from designer.model.region import PointList, Prism, Rectangle, Region
 from designer.model.space import Orientations, Space
-from designer.proof.encloser import Cover, _turning_axes, border_m, covers_of
+from designer.proof.encloser import Cover, _rotation_axes, border_m, covers_of
 
 _TRIANGLE = Prism(np.array([[0.0, 0.0], [5.0, 0.5], [2.0, 4.0]]), (-3.0, -1.0))
 _BOX = Prism.box((0.0, 2.0), (1.0, 4.0), (5.0, 5.5))
@@ -68,7 +68,7 @@ def test_the_axes_of_turning_are_the_slopes_of_the_rotation() -> None:
     rng = np.random.default_rng(3)
     for size in (0.0, 1e-3, 0.3, 2.0):
         turn, arm, step = size * rng.normal(size=3), rng.normal(size=3), 1e-6
-        axes = _turning_axes(turn[None])[0]
+        axes = _rotation_axes(turn[None])[0]
         for d in range(3):
             ahead, behind = (
                 Rotation.from_rotvec(turn + sign * step * np.eye(3)[d]).apply(arm)

@@ -158,7 +158,7 @@ class TestEdge:
         assert "left out: a cable hangs below the platform" in texts(svg)
 
 
-class TestServed:
+class TestCoverage:
     def test_served(self) -> None:
         found = texts(served_chart(maps_of("served").coverage))
         assert {"serves all: 51.2 mm", "massless: 29.3 mm", "with sag", "massless"} <= found

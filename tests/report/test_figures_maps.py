@@ -284,7 +284,7 @@ class TestEdge:
         assert "no cable was found that holds" in text
 
 
-class TestServed:
+class TestCoverage:
     def test_all_is_served_by_the_optimum(self) -> None:
         served = maps_of("served").coverage
         assert served.share[-1] == served.massless_share[-1] == 1.0
