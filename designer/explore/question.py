@@ -125,7 +125,10 @@ class Question:
 
     @cached_property
     def catalogue(self) -> Catalogue:
-        return catalogue_of(self.study, self.plugins)
+        """All grades, read anew only where files have changed; InputError if one is faulty."""
+        catalogue = cached_catalogue(self.study.catalogues, self.plugins)
+        catalogue.require_grades_of(self.study)
+        return catalogue
 
     @cached_property
     def cable(self) -> Cable | Cables | None:
@@ -169,11 +172,9 @@ class Question:
         if cable.stiffening is None:
             return cable
         if self.workspace is None:
+            robot, pose = self.robot, self.pose
             return converge_stiffness(
-                cable,
-                lambda stiffened: float(
-                    solve_sagging(self.robot, self.pose, stiffened).largest_tension_N
-                ),
+                cable, lambda varied: float(solve_sagging(robot, pose, varied).largest_tension_N)
             )
         naming = replace(self.selection, grades=(rope.grade_id,), materials=())
         (candidate,) = self._at_samples(self.workspace, naming, [self._grade_of(rope)])
@@ -198,16 +199,6 @@ class Question:
             return candidates
         sampled = self._at_samples(self.workspace, self.selection, list(varying.values()))
         return [c for c in candidates if c.grade.id not in varying] + sampled
-
-
-def catalogue_of(study: Study, plugins: Plugins) -> Catalogue:
-    """Return the catalogue of a study, read anew only where its files have changed.
-
-    Raises InputError if a file that the study names is faulty, or there is no grade that it names.
-    """
-    catalogue = cached_catalogue(study.catalogues, plugins)
-    catalogue.require_grades_of(study)
-    return catalogue
 
 
 def initial_place(study: Study | None) -> FloatArray:

@@ -105,7 +105,7 @@ def _measure(name: str, ask: Asker, with_report: bool) -> None:
     points = sum(grid[..., 0].size for grid in fine.grids.values())
     steps = {
         "edit": _median_s(edit),
-        "pose": _median_s(lambda: (edit(), ask("here", session))),
+        "pose": _median_s(lambda: (edit(), ask("pose", session))),
         "coarse map": _median_s(
             lambda: (edit(), maps.append(ask("coarse", session, quantities=_SHOWN)))
         ),

@@ -51,7 +51,7 @@ PRINTED = (
 
 
 @pytest.fixture(autouse=True)
-def pose_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each test has a folder of its own; tables print unbroken."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(terminal, "_out", terminal.Console(highlight=False, width=200))

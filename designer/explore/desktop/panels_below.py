@@ -188,7 +188,7 @@ ROPE_COLUMNS = (
         _rope_rank,
     ),
 )
-_ROPE_WIDTHS = (72, 180, 116, 72, 60, 84, 78, 56, 80, 104, 84, 116, 60)
+_ROPE_WIDTHS = (72, 180, 116, 72, 60, 84, 78, 56, 80, 124, 84, 116, 60)
 
 
 class PanelRopes(QWidget):
