@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOMES = {
-    "designer.api": "analyse catalogue compare diagnose export find_poses follow lengths read_study"
-    " size sweep write_report",
+    "designer.api": "analyse catalogue compare diagnose find_poses follow lengths read_study size"
+    " write_report",
     "designer.analysis.analyse": "Analysis",
     "designer.analysis.comparison": "Comparison",
     "designer.analysis.lengths": "FoundPoses Lengths",
@@ -20,6 +20,7 @@ _HOMES = {
     "designer.grades.grade": "Grade",
     "designer.grades.registry": "Catalogue",
     "designer.diagnosis.result": "Diagnosis",
+    "designer.exports.formats": "export",
     "designer.errors": "DesignerError EffectError InputError OutputError",
     "designer.model.cable": "Cable Material",
     "designer.model.load_case": "Ice LoadCase Wind",
@@ -33,6 +34,7 @@ _HOMES = {
     "designer.model.workspace": "Workspace",
     "designer.optimum.optimise": "Optimum optimise",
     "designer.resources": "example_file example_names",
+    "designer.sweeps.run": "sweep",
     "designer.study": "CableGroup DeclaredEffect RopeLimits Selection Study",
 }
 """Where the public names are defined, those of each module separated by spaces."""
@@ -48,17 +50,16 @@ if TYPE_CHECKING:
         catalogue,
         compare,
         diagnose,
-        export,
         find_poses,
         follow,
         lengths,
         read_study,
         size,
-        sweep,
         write_report,
     )
     from designer.diagnosis.result import Diagnosis
     from designer.errors import DesignerError, EffectError, InputError, OutputError
+    from designer.exports.formats import export
     from designer.grades.grade import Grade
     from designer.grades.registry import Catalogue
     from designer.model.cable import Cable, Material
@@ -74,6 +75,7 @@ if TYPE_CHECKING:
     from designer.optimum.optimise import Optimum, optimise
     from designer.resources import example_file, example_names
     from designer.study import CableGroup, DeclaredEffect, RopeLimits, Selection, Study
+    from designer.sweeps.run import sweep
 
 __all__ = [
     "Analysis",

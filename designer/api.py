@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from designer.analysis.analyse import Analysis, TemporaryFolder
+from designer.analysis.analyse import Analysis
 from designer.analysis.analyse import analyse as analyse_study
 from designer.analysis.comparison import Comparison
 from designer.analysis.comparison import compare as compare_results
@@ -19,22 +19,19 @@ from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.arrays import FloatArray
 from designer.diagnosis.result import Diagnosis
 from designer.effects.load import load_effects
-from designer.errors import InputError, NothingToExportError, WrongValueError
+from designer.errors import InputError, WrongValueError
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.io import config
 from designer.io.results import read_result
 from designer.model.motion import limited, timed
 from designer.model.region import PointList
 from designer.model.robot import Poses
-from designer.model.space import EachPose, Orientations
+from designer.model.space import ListedOrientations, Orientations
 from designer.model.workspace import Workspace
 from designer.plugins import find_plugins
 from designer.progress import SILENT, Reporter
 from designer.report.render import write_report as write_analysis
 from designer.study import Study
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 AnyStudy = Study | Path | str
 """A study, or the path of its file."""
@@ -45,13 +42,11 @@ __all__ = [
     "catalogue",
     "compare",
     "diagnose",
-    "export",
     "find_poses",
     "follow",
     "lengths",
     "read_study",
     "size",
-    "sweep",
     "write_report",
 ]
 
@@ -96,7 +91,7 @@ def analyse(
 
     Parameters and errors are those of `designer.analysis.analyse.analyse`, and of `read_study`.
     """
-    return analyse_study(_study(study), catalogue, folder, reporter)
+    return analyse_study(as_study(study), catalogue, folder, reporter)
 
 
 def write_report(
@@ -113,7 +108,7 @@ def write_report(
     ours, and a ``quick`` report is page 1 in HTML alone.
     """
     if not isinstance(analysis, Analysis):
-        study = _study(analysis)
+        study = as_study(analysis)
         analysis = Analysis.begin(study.unproved) if quick else analyse_study(study)
     write_analysis(analysis, folder, template, quick=quick)
 
@@ -126,7 +121,7 @@ def size(study: AnyStudy) -> PoseAnalysis:
     InputError
         If the study has no pose, or the robot has fewer cables than degrees of freedom.
     """
-    return analyse_pose(_study(study))
+    return analyse_pose(as_study(study))
 
 
 def follow(
@@ -155,7 +150,7 @@ def follow(
     InputError
         If there are neither times nor both limits, or a value is wrong.
     """
-    study = _study(study)
+    study = as_study(study)
     rows = _rows("places", places)
     rows = np.pad(rows, ((0, 0), (0, 6 - rows.shape[1])))
     up, limits = study.robot.level[2], (speed_max_m_per_s, acceleration_max_m_per_s2)
@@ -173,7 +168,11 @@ def follow(
     if motion.turns and platform.inertia_kg_m2 is None:
         raise WrongValueError("Platform", "inertia_kg_m2", "inertia_kg_m2 is missing: it turns")
     region = PointList(np.unique(motion.positions_m, axis=0))
-    law = EachPose.of(motion.positions_m, motion.rotation_vectors_rad) if motion.turns else None
+    law = (
+        ListedOrientations.of(motion.positions_m, motion.rotation_vectors_rad)
+        if motion.turns
+        else None
+    )
     workspace = study.workspace or Workspace(region)
     workspace = replace(workspace, region=region, orientations=Orientations(law=law))
     return replace(study, robot=replace(study.robot, platform=platform), workspace=workspace)
@@ -221,66 +220,6 @@ def compare(a: Analysis | AnyStudy, b: Analysis | AnyStudy) -> Comparison:
     return compare_results(result(a), result(b))
 
 
-def sweep(
-    plan: Path | str, store: Path | str | None = None, *, workers: int | None = None
-) -> xr.Dataset:
-    """Return a sweep's points, solved in ``workers`` processes, as `designer sweep` does.
-
-    In a script it stands below ``if __name__ == "__main__":``, since processes read the script.
-
-    Parameters
-    ----------
-    plan : Path or str
-        The YAML file of the sweep.
-    store : Path or str, optional
-        Zarr store to keep; a sweep that is in it goes on. Nothing is kept if left out.
-    workers : int, optional
-        All processors if left out.
-
-    Raises
-    ------
-    InputError
-        If the plan is wrong.
-    """
-    from designer.sweeps import run as running
-    from designer.sweeps.plan import read_sweep
-    from designer.sweeps.run import opened, read_store
-
-    scratch = TemporaryFolder()
-    path = scratch.folder / "sweep.zarr" if store is None else Path(store)
-    laid_out, count = read_sweep(Path(plan), True), workers or running.processor_count()
-    with opened(path, laid_out) as points:
-        running.run(laid_out, points, running.processes(count), count)
-    return read_store(path).load()
-
-
-def export(study: AnyStudy, to: str, path: Path | str) -> tuple[str, ...]:
-    """Write the study for another program; returns what that cannot take, a line each.
-
-    ``to`` is ``caspr``, ``moordyn``, ``mujoco``, ``gltf`` or ``csv``. As `designer export` does.
-
-    Raises
-    ------
-    InputError
-        If there is no such format, the name of the file has another ending than it, or nothing
-        serves the study.
-    OutputError
-        If it cannot be written.
-    """
-    from designer.exports.formats import FORMATS, export_study
-
-    if to not in FORMATS:
-        raise WrongValueError("export", "to", f"to is {to!r}", ", ".join(FORMATS))
-    kind, target, study = FORMATS[to], Path(path), _study(study)
-    if not target.name.endswith(kind.ending):
-        raise WrongValueError("export", "path", f"path is {target.name!r}", f"…{kind.ending}")
-    try:
-        made = export_study(kind, target, study, load_catalogue(), SILENT)
-    except NothingToExportError as reason:
-        raise InputError.at(study.source.path, str(reason)) from None
-    return tuple(made.lost)
-
-
 def _rows(name: str, values: ArrayLike, *widths: int) -> FloatArray:
     """Return numbers as rows (n, one of the widths: 3 or 6 if left out)."""
     try:
@@ -294,12 +233,13 @@ def _rows(name: str, values: ArrayLike, *widths: int) -> FloatArray:
     return rows
 
 
-def _study(study: AnyStudy) -> Study:
+def as_study(study: AnyStudy) -> Study:
+    """Return a study, read if it is named by its file."""
     return read_study(study) if isinstance(study, str | Path) else study
 
 
 def _begun(study: Analysis | AnyStudy) -> Analysis:
-    return study if isinstance(study, Analysis) else Analysis.begin(_study(study).unproved)
+    return study if isinstance(study, Analysis) else Analysis.begin(as_study(study).unproved)
 
 
 def _served(answer: Answer | None) -> Answer:
@@ -332,7 +272,7 @@ def diagnose(
     from designer.diagnosis.diagnose import diagnose_study
     from designer.measured.read import read_measured
 
-    study = _study(study)
+    study = as_study(study)
     if data is not None and study.measurements is not None:
         study = replace(study, measurements=study.measurements.of_file(Path(data)))
     return diagnose_study(study, read_measured(study), progress)

@@ -49,7 +49,7 @@ class Ring:
     """A capability that sizing, selection and the report do not need."""
 
     name: str
-    rooms: tuple[str, ...]  #: folders of `designer/`; the first has its hooks
+    rooms: tuple[str, ...]  #: folders of `designer/`; the last has its hooks
     commands: tuple[str, ...]  #: that it brings
 
     @property
@@ -61,6 +61,8 @@ class Ring:
 
 RINGS = (
     Ring("reference", ("reference",), ("verify",)),
+    Ring("exchange", ("foreign", "exports"), ("import", "export")),
+    Ring("batch", ("sweeps", "optimum"), ("sweep", "optimise")),
     Ring("drafting", ("drafting",), ("catalog new",)),
     Ring("window", ("explore",), ("explore",)),
 )
@@ -70,7 +72,7 @@ OWN_ENTRIES = tuple(
     for name, module in (
         ("builtin", "grades.builtin"),
         ("builtin-effects", "effects.builtin"),
-        *((ring.name, ring.rooms[0]) for ring in RINGS),
+        *((ring.name, ring.rooms[-1]) for ring in RINGS),
     )
 )
 """Our own plugins, as `pyproject.toml` declares them.

@@ -11,7 +11,7 @@ import xarray as xr
 
 from designer.documents.plain import csv_text, harmless
 from designer.explore.export import _csv
-from designer.report.sweep import _table
+from designer.sweeps.report import _table
 
 FORMULAS = ["=1+1", "+cmd|' /C calc'!A0", "-1+1", "@SUM(A1)", "\t=1", '=HYPERLINK("a")']
 WIDE = ["\uff1d1+1", "\uff0b1+1", "\uff0d1+1", "\uff20SUM(A1)"]

@@ -12,43 +12,49 @@ from functools import cached_property
 from importlib import import_module
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from designer import checked
-from designer.analysis.carries import Carries, carries_of
 from designer.analysis.findings import Findings, find
 from designer.analysis.governing import (
     GoverningPose,
     GoverningRopes,
+    PlatformModes,
     governing_pose,
     governing_ropes,
+    modes_of,
 )
-from designer.analysis.modes import PlatformModes, modes_of
 from designer.analysis.path import PathAnalysis, path_of, path_requirements
 from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.analysis.provenance import Provenance
 from designer.analysis.reactions import Reaction, reactions_of
-from designer.analysis.requirements import Terms, design_loads, requirements_of, terms_of
-from designer.analysis.sensitivities import Sensitivities, group_sensitivities
+from designer.analysis.requirements import Terms, requirements_of, terms_of
+from designer.analysis.sensitivity import (
+    Sensitivities,
+    SensitivityReport,
+    group_sensitivities,
+    sensitivity_report,
+)
 from designer.analysis.uncertainty import UncertaintyAnalysis, uncertainty_of
 from designer.analysis.verification import SecondAnswer, second_answers
-from designer.documents.plain import lies_in
+from designer.documents.plain import is_requested
 from designer.effects.design import AsBuilt
 from designer.grades.registry import Catalogue, load_catalogue
+from designer.model.cable import Cable
+from designer.model.load_case import STATIC, Loaded
 from designer.model.robot import Poses
 from designer.model.verdict import Answer, Requirement, State, Verdict, answer_of
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Budget
 from designer.proof.servable import Servable, servable
-from designer.selection.assignment import Assignment, for_all
+from designer.selection.assignment import Assignment, Qualities, for_all, qualities_of
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult
-from designer.selection.family_need import CaseNeed, family_needs, most_needed
-from designer.selection.groups.choose import choose_groups_of
-from designer.selection.groups.result import GroupChoice
-from designer.selection.qualities import Qualities, qualities_of
+from designer.selection.family import CaseNeed, family_needs, governing_need
+from designer.selection.groups import GroupChoice, choose_groups_of
+from designer.selection.requirements import CaseLoads
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.sizing.newton import Sizing, size_poses
@@ -60,6 +66,31 @@ from designer.workspace.sweep import HangingCables, WorkspaceMap, map_workspace
 
 if TYPE_CHECKING:
     from designer.report.plot import Plots
+
+
+_MOTION_SAMPLES = 64
+"""Poses of a workspace that show whether a motion is free in all of them."""
+_METAL_KG_PER_M3 = 2500.0
+"""Over the nominal circle: of wire ropes 3800 at least, of fibre ropes 1640 at most."""
+_NEEDS_CHOSEN_ONLY = re.compile(
+    r"(name|positive|answer|pose|workspace|load_cases"
+    r"|selection\.chosen(?!\.(continuous_diameter_m|outcome)$))(\.|$)"
+).match
+"""Whether a path of ``result.json`` needs the chosen rope alone."""
+_STAGES = (
+    *("pose", "workspace", "selection", "groups", "needs", "qualities", "requirements", "terms"),
+    *(
+        "path",
+        "reactions",
+        "verification",
+        "sensitivity",
+        "group_slopes",
+        "servable",
+        "uncertainty",
+    ),
+    *("worst_sizing", "outside", "governing", "findings", "modes"),
+)
+"""In the order in which their progress is shown."""
 
 
 class TemporaryFolder:
@@ -84,10 +115,6 @@ class TemporaryFolder:
 def _remove_locked(lock: Any) -> None:
     lock.release()  # Windows removes no file that is open
     shutil.rmtree(Path(lock.lock_file).parent, ignore_errors=True)
-
-
-_FEW_POSES = 64
-"""Of a workspace, that tell whether a motion is free in all of them."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -148,7 +175,7 @@ class Analysis(checked.Shown):
 
     def is_read(self, part: str) -> bool:
         """Tell whether a part of ``result.json`` is read, such as ``workspace.servable``."""
-        return lies_in(part, self.keep)
+        return is_requested(part, self.keep)
 
     @cached_property
     def pose(self) -> PoseAnalysis | None:
@@ -161,7 +188,7 @@ class Analysis(checked.Shown):
         study, workspace = self.study, self.study.workspace
         if workspace is not None:
             landmarks = workspace.space.landmarks()
-            poses = Poses.at(np.concatenate([landmarks, workspace.thinned(_FEW_POSES)]))
+            poses = Poses.at(np.concatenate([landmarks, workspace.thinned(_MOTION_SAMPLES)]))
         elif study.pose is not None:
             poses = study.pose.flat
         else:
@@ -197,7 +224,12 @@ class Analysis(checked.Shown):
                 study.workspace,
                 built.material(study.material),
                 file=folder and folder / "workspace.nc",
-                attributes=_attributes(study, self.provenance),
+                attributes={
+                    "title": study.name,
+                    "source": f"cdpr-designer {self.provenance.version}",
+                    "config_sha256": study.source.sha256,
+                    "history": f"{self.provenance.created.isoformat(timespec='seconds')} created",
+                },
                 progress=advance,
                 with_massless=self.is_read("workspace.massless") or self.is_read("findings"),
             )
@@ -221,7 +253,7 @@ class Analysis(checked.Shown):
             load_cases=self.study.load_cases,
             reporter=self.reporter,
             proof_s=0.0 if selection.groups else workspace.proof_s,
-            explains=self.keep is None or not all(map(_TELLS_NO_GRADES, self.keep)),
+            explains=self.keep is None or not all(map(_NEEDS_CHOSEN_ONLY, self.keep)),
         )
 
     @cached_property
@@ -246,16 +278,24 @@ class Analysis(checked.Shown):
     @cached_property
     def qualities(self) -> Qualities | None:
         """Stiffness and clearances; None unless a cable holds in all of a workspace."""
-        study, workspace = self.study, self.workspace
-        if study.workspace is None or workspace is None:
+        survey, material = self.workspace, self.study.material
+        if survey is None:
             return None
-        return qualities_of(
-            study.workspace,
-            workspace,
-            self.assignment,
-            self.built,
-            study.material,
-            self.needs,
+        ropes = self.assignment, self.built, material, self.needs
+        return qualities_of(survey.workspace, survey, *ropes)
+
+    @cached_property
+    def loads(self) -> tuple[CaseLoads, ...]:
+        """The load cases with the cables of the design, each in all directions; () without."""
+        if self.qualities is None:
+            return ()
+        workspace, robot = self.qualities.workspace, self.qualities.robot
+        cable = cast(Cable, self.qualities.cable.cable)  # or `Cables`, of the same figures
+        if not self.study.load_cases:
+            return (CaseLoads(workspace, (Loaded(STATIC, (robot, cable), robot, cable),)),)
+        return tuple(
+            CaseLoads(workspace.of_case(case), tuple(case.on(robot, cable)))
+            for case in self.study.load_cases
         )
 
     @cached_property
@@ -291,11 +331,11 @@ class Analysis(checked.Shown):
     @cached_property
     def worst_sizing(self) -> Sizing | None:
         """The cable that the worst pose of the workspace needs; None where none is finite."""
-        if self.workspace is None or self.workspace.sagging is None:
+        survey = self.workspace
+        if survey is None or survey.sagging is None:
             return None
         material = self.built.material(self.study.material)
-        pose = self.workspace.sagging.pose
-        return size_poses(self.built.robot, pose, material, proves_thinnest=True)
+        return size_poses(self.built.robot, survey.sagging.pose, material, proves_thinnest=True)
 
     @cached_property
     def outside(self) -> Statics | None:
@@ -316,9 +356,9 @@ class Analysis(checked.Shown):
         return second_answers(self)
 
     @cached_property
-    def carries(self) -> Carries | None:
-        """What carries the choice of a rope for all cables."""
-        return carries_of(self.study, self.selection, self.assignment.rope)
+    def sensitivity(self) -> SensitivityReport | None:
+        """What the choice of a rope for all cables rests on; None without one."""
+        return sensitivity_report(self.study, self.selection, self.assignment.rope)
 
     @cached_property
     def group_slopes(self) -> tuple[Sensitivities, ...]:
@@ -328,10 +368,10 @@ class Analysis(checked.Shown):
     @cached_property
     def servable(self) -> Servable | None:
         """Which part of the region no rope can serve; None where nothing speaks for such a part."""
-        workspace, survey = self.study.workspace, self.workspace
-        if survey is None or workspace is None or workspace.proof_s == 0.0:
+        survey = self.workspace
+        if survey is None or survey.workspace.proof_s == 0.0:
             return None
-        counts = survey.census.statuses
+        workspace, counts = survey.workspace, survey.census.statuses
         if not any(counts[v.label] for v in Verdict if v.questions_all_ropes):
             return None
         with self.reporter.task("impossible", 1):
@@ -350,11 +390,10 @@ class Analysis(checked.Shown):
     @cached_property
     def reactions(self) -> tuple[Reaction, ...]:
         """What the cables of the design do to their supports; nothing where none holds."""
-        if self.qualities is None:
+        if not self.loads:
             return ()
-        loads = design_loads(self.study, self.built, self.qualities.cable)
-        with self.reporter.task("reactions", len(loads)) as advance:
-            return reactions_of(loads, advance)
+        with self.reporter.task("reactions", len(self.loads)) as advance:
+            return reactions_of(self.loads, advance)
 
     @property
     def plot(self) -> Plots:
@@ -434,29 +473,14 @@ class Analysis(checked.Shown):
         return tuple(sorted(unmet, key=lambda requirement: requirement.state is State.OPEN))
 
     @property
-    def most_needed(self) -> CaseNeed | None:
+    def governing_need(self) -> CaseNeed | None:
         """The load case that needs the thickest cable of the family, or one that none holds."""
-        return most_needed(self.needs)
+        return governing_need(self.needs)
 
     @property
     def chosen(self) -> Candidate | None:
         """The product chosen for all cables; None without one."""
         return self.selection.chosen if self.selection is not None else None
-
-
-_METAL_KG_PER_M3 = 2500.0
-"""Over the nominal circle: of wire ropes 3800 at least, of fibre ropes 1640 at most."""
-_TELLS_NO_GRADES = re.compile(
-    r"(name|positive|answer|pose|workspace|load_cases"
-    r"|selection\.chosen(?!\.(continuous_diameter_m|outcome)$))(\.|$)"
-).match
-"""Whether a path of ``result.json`` is told by the chosen rope alone."""
-_STAGES = (
-    *("pose", "workspace", "selection", "groups", "needs", "qualities", "requirements", "terms"),
-    *("path", "reactions", "verification", "carries", "group_slopes", "servable", "uncertainty"),
-    *("worst_sizing", "outside", "governing", "findings", "modes"),
-)
-"""In the order in which their progress is shown."""
 
 
 def analyse(
@@ -502,12 +526,3 @@ def finished(analysis: Analysis) -> Analysis:
     for case in analysis.cases:
         _ = case.most_used
     return analysis
-
-
-def _attributes(study: Study, provenance: Provenance) -> dict[str, str]:
-    return {
-        "title": study.name,
-        "source": f"cdpr-designer {provenance.version}",
-        "config_sha256": study.source.sha256,
-        "history": f"{provenance.created.isoformat(timespec='seconds')} created",
-    }

@@ -11,7 +11,7 @@ from designer import checked
 from designer.documents.plain import Json
 from designer.spelling import digits
 
-_TOLD = 1e-9
+_RTOL = 1e-9
 """Relative difference below which numbers are the same: what a search at a flat optimum leaves."""
 _COST = "selection.chosen.cost"
 _ANSWERS = {
@@ -145,25 +145,22 @@ def compare(a: Mapping[str, Any], b: Mapping[str, Any]) -> Comparison:
     has_inputs = all(isinstance(result.get("inputs"), Mapping) for result in (a, b))
     inputs = _lines(a["inputs"], b["inputs"]) if has_inputs else iter(())
     of_a, of_b = dict(_flat(a)), dict(_flat(b))
+    answers = []
+    for path, label in _ANSWERS.items():
+        line = ComparisonLine(path, label, of_a.get(path), of_b.get(path))
+        if line.a is not None or line.b is not None:
+            answers.append(_with_currency(line, of_a, of_b) if path == _COST else line)
     remaining = (line for line in _lines(of_a, of_b) if line.path not in _ANSWERS)
     return Comparison(
         a,
         b,
         tuple(line for line in inputs if line.differs),
         has_inputs,
-        tuple(_answers(of_a, of_b)),
+        tuple(answers),
         tuple(_unmet(a, b)),
         tuple(line for line in _lines(_products(a), _products(b)) if line.differs),
         tuple(line for line in remaining if line.differs),
     )
-
-
-def _answers(of_a: Mapping[str, Any], of_b: Mapping[str, Any]) -> Iterator[ComparisonLine]:
-    """Yield what a reader compares first and one of the two has."""
-    for path, label in _ANSWERS.items():
-        line = ComparisonLine(path, label, of_a.get(path), of_b.get(path))
-        if line.a is not None or line.b is not None:
-            yield _with_currency(line, of_a, of_b) if path == _COST else line
 
 
 def _with_currency(
@@ -192,11 +189,12 @@ def _lines(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[ComparisonLin
 def _unmet(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[ComparisonLine]:
     """Yield each requirement that one of the two does not meet; None where it is not asked."""
     # Of groups of cables several have one name: the one that does not hold counts.
-    each = (
-        sorted(result.get("checks", []), key=lambda c: c["state"] != "holds") for result in (a, b)
-    )
     checks_a, checks_b = (
-        {f"{check['id']} in {check['load_case']}": check for check in checks} for checks in each
+        {
+            f"{check['id']} in {check['load_case']}": check
+            for check in sorted(result.get("checks", []), key=lambda c: c["state"] != "holds")
+        }
+        for result in (a, b)
     )
     for key in dict.fromkeys([*checks_a, *checks_b]):
         checks = checks_a.get(key), checks_b.get(key)
@@ -245,7 +243,7 @@ def _same(a: Any, b: Any) -> bool:
     if isinstance(a, list) and isinstance(b, list):
         return len(a) == len(b) and all(map(_same, a, b))
     if _is_number(a) and _is_number(b):
-        return math.isclose(a, b, rel_tol=_TOLD)
+        return math.isclose(a, b, rel_tol=_RTOL)
     return bool(a == b)
 
 

@@ -3,28 +3,35 @@
 What would ignoring sag have led to? How much does the doubt about the rope's modulus matter? How
 near is the chosen rope to the boundary of what any section can hold? What changes if poses with a
 cable below the platform count, or not? How wide is the strip that cannot be served?
+
+Which load cases carry the platform away: do straight cables hold it at rest, and not in the case?
+A sagging rope may still hold such a pose, by hanging far below as a counterweight; its length then
+says nothing about a design.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import mean
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from designer.analysis.adrift import Adrift, adrift_in
 from designer.arrays import BoolArray, FloatArray
 from designer.grades.grade import Size
-from designer.model.robot import Poses, Robot
+from designer.model.cable import Cable
+from designer.model.load_case import LoadCase, Loaded
+from designer.model.robot import Platform, Poses, Robot
+from designer.model.space import named_place
 from designer.model.workspace import HangsBelow, Workspace
 from designer.selection.candidate import Candidate
 from designer.selection.result import GradeOutcome
 from designer.selection.verify import Verification, verify
 from designer.sizing.newton import limit_ratio, size_poses
 from designer.statics.free_motion import FreeMotion
-from designer.statics.inverse import solve_sagging
+from designer.statics.inverse import solve_massless, solve_sagging
 from designer.statics.sizes import is_quick
 from designer.workspace.demand import is_left_out
 from designer.workspace.sweep import WorkspaceMap, map_workspace, open_sweep
@@ -32,13 +39,16 @@ from designer.workspace.sweep import WorkspaceMap, map_workspace, open_sweep
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
 
-_MOST_SAMPLES = 20_000
-_FEW_PLACES, _FEW_POSITIONS = 2000, 100  # of robots that are slow to solve
+
+_MAX_SAMPLES = 20_000  # of the opposite policy
+_SLOW_PLACES, _SLOW_POSITIONS = 2000, 100  # the same of robots that are slow to solve
 _CHUNK = 2**18
 _THIN_M = 1e-3
 _STEPS = np.array([0.1, 0.2, 0.3, 0.5, 0.75, 1.0])  # of the way to the middle
 _BELOW = 0.25  # of the robot's size: how far below the exit points cables hold a platform easily
 _RISES, _FACTORS = (0.02, 0.05, 0.1, 0.2, 0.5), (1.1, 1.25, 1.5, 2.0, 4.0)
+_EQUILIBRIUM_SAMPLES, _REDUNDANT_SAMPLES = 512, 32
+"""Poses of each direction of a load; of redundant robots few, since each is a programme."""
 
 
 def _named_worst(survey: WorkspaceMap) -> dict[str, Any]:
@@ -54,14 +64,11 @@ def _named_worst(survey: WorkspaceMap) -> dict[str, Any]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MasslessChoice:
-    """The size of the chosen grade that a design without sag would have picked.
+    """The size of the chosen grade that a design without sag would have picked."""
 
-    It is the thinnest whose allowable tension covers the massless one; ``verification`` tells what
-    it really meets in the workspace.
-    """
-
+    #: the thinnest whose allowable tension covers the massless one
     candidate: Candidate = field(metadata={"json": lambda rope: rope.ids})
-    verification: Verification = field(
+    verification: Verification = field(  #: with its weight, in the workspace
         metadata={
             "json": lambda v: {"max_tension_N": v.max_tension_N, "utilisation": v.utilisation}
         }
@@ -94,119 +101,133 @@ class OtherPolicy:
 
 @dataclass(frozen=True, slots=True)
 class Unserved:
-    """Where the samples lie that no cable of the configured family can serve.
+    """Where the samples lie that no cable of the configured family can serve."""
 
-    Parameters
-    ----------
-    depth_m : float
-        Largest distance of any of them from the sides of the region [m].
-    inradius_m : float
-        Largest distance of any sample from the sides [m].
-    lowest_z_m : float
-        Smallest z of any of them [m].
-    """
-
-    depth_m: float
-    inradius_m: float
-    lowest_z_m: float
+    depth_m: float  #: largest distance of any of them from the sides of the region [m]
+    inradius_m: float  #: largest distance of any sample from the sides [m]
+    lowest_z_m: float  #: smallest z of any of them [m]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Remedies:
-    """What was tried on a pose that the configured family does not hold, and holds it.
+    """What was tried on a pose that the configured family does not hold, and holds it."""
 
-    Parameters
-    ----------
-    position_m : array (3,) or None
-        The nearest one that is held, of some toward the middle below the exit points [m].
-    raised_m : float or None
-        By how much the exit points above the pose are raised for it [m].
-    stronger : float or None
-        How many times as strong the cable is for its weight.
-    """
-
+    #: (3,) the nearest one that is held, of some toward the middle below the exit points [m]
     position_m: FloatArray | None
-    raised_m: float | None
-    stronger: float | None
+    raised_m: float | None  #: by how much the exit points above the pose are raised for it [m]
+    stronger: float | None  #: how many times as strong the cable is for its weight
+
+
+def _named_loads(loaded: Loaded) -> dict[str, Any]:
+    directions = {"wind_direction": loaded.wind, "inertia_direction": loaded.inertia}
+    return {"load_case": loaded.case.name, **directions, "wrench_N": loaded.wrench_N}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EquilibriumLoss:
+    """A load case in which straight cables do not hold the platform everywhere."""
+
+    #: in the direction of wind and inertia in which that is so most often
+    loaded: Loaded = field(metadata={"json": _named_loads})
+    share: float  #: of the poses that straight cables hold at rest
+    #: (n_coordinates,) one of them [m, rad]
+    place: FloatArray = field(metadata={"json": named_place})
+    #: force on the platform beside its weight and what acts on it at rest [N]
+    push_N: float = field(metadata={"json": "force_N"})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Findings:
-    """Answers to the questions of this module; None where a question does not arise.
+    """Answers to the questions of this module; None where a question does not arise."""
 
-    Parameters
-    ----------
-    chosen_outcome : GradeOutcome or None
-        The grade of the chosen product.
-    chosen_limit_ratio : float or None
-        Stress at infinite section over allowable stress, in that grade's family, at the worst
-        pose of the chosen product.
-    massless_choice : MasslessChoice or None
-        None also where the grade has no size thick enough for the massless tension.
-    modulus_utilisation : tuple of float or None
-        Utilisation at the worst pose with the lowest and the highest modulus that is possible.
-    other_policy : OtherPolicy or None
-        None where no cable hangs below the platform.
-    hanging : float or None
-        Share of the samples in which a cable hangs below the platform: with the chosen rope, or
-        those of groups, where there is one, else with what the configured family needs. None
-        without a workspace.
-    unserved : Unserved or None
-        None where every sample is served, or none is, and for a list of points.
-    adrift : tuple of Adrift
-        Load cases that carry the platform away somewhere.
-    free_motion : FreeMotion or None
-        A motion of the platform that no cable resists in any pose.
-    remedies : Remedies or None
-        Of the configured pose if that is not held, else of one of the workspace; None where all
-        are.
-    """
-
+    #: the grade of the chosen product
     chosen_outcome: GradeOutcome | None = field(default=None, metadata={"json": None})
+    #: stress at infinite section over allowable stress, in that grade's family, at the worst pose
+    #: of the chosen product
     chosen_limit_ratio: float | None = None
+    #: None also where the grade has no size thick enough for the massless tension
     massless_choice: MasslessChoice | None = field(
         default=None, metadata={"json": "without_cable_weight"}
     )
+    #: utilisation at the worst pose with the lowest and the highest modulus that is possible
     modulus_utilisation: tuple[float, float] | None = None
+    #: None where no cable hangs below the platform
     other_policy: OtherPolicy | None = field(default=None, metadata={"json": "other_hangs_below"})
+    #: share of the samples in which a cable hangs below the platform: with the chosen rope, or
+    #: those of groups, where there is one, else with what the configured family needs. None without
+    #: a workspace.
     hanging: float | None = field(default=None, metadata={"json": "hanging_share"})
+    #: None where every sample is served, or none is, and for a list of points
     unserved: Unserved | None = None
-    adrift: tuple[Adrift, ...] = field(default=(), metadata={"json": "not_in_equilibrium"})
+    #: load cases in which straight cables do not hold all that they hold at rest
+    equilibrium_losses: tuple[EquilibriumLoss, ...] = field(
+        default=(), metadata={"json": "not_in_equilibrium"}
+    )
+    #: a motion of the platform that no cable resists in any pose
     free_motion: FreeMotion | None = None
+    #: of the configured pose if that is not held, else of one of the workspace; None where all are
     remedies: Remedies | None = None
 
 
 def find(analysis: Analysis) -> Findings:
     """Answer the questions of this module."""
-    findings = Findings(
-        other_policy=_other_policy(analysis),
-        hanging=_hanging(analysis),
-        unserved=_unserved(analysis),
-        adrift=_adrift(analysis),
-        free_motion=analysis.free_motion,
-        remedies=_remedies(analysis),
+    findings = Findings(free_motion=analysis.free_motion, remedies=_remedies(analysis))
+    study, built, survey = analysis.study, analysis.built, analysis.workspace
+    if survey is None:
+        return findings
+    # Straight cables are of any thickness.
+    thin = built.material(study.material).cable(_THIN_M)
+    losses = equilibrium_losses(built.robot, survey.workspace, study.load_cases, thin)
+    findings = replace(
+        findings,
+        other_policy=_other_policy(analysis, survey),
+        hanging=_hanging(analysis, survey),
+        unserved=_unserved(survey),
+        equilibrium_losses=tuple(losses),
     )
     chosen = analysis.chosen
     if chosen is None or analysis.selection is None:
         return findings
     outcome = next(o for o in analysis.selection.outcomes if o.best is chosen)
-    robot = analysis.built.robot
     worst = Poses.at(chosen.verification.worst_place)
     return replace(
         findings,
         chosen_outcome=outcome,
-        chosen_limit_ratio=float(limit_ratio(robot, worst, outcome.family)),
-        massless_choice=_massless_choice(analysis, outcome),
+        chosen_limit_ratio=float(limit_ratio(built.robot, worst, outcome.family)),
+        massless_choice=_massless_choice(analysis, survey, outcome),
         modulus_utilisation=modulus_utilisation(chosen),
     )
 
 
-def _adrift(analysis: Analysis) -> tuple[Adrift, ...]:
-    study, built = analysis.study, analysis.built
-    if study.workspace is None:
-        return ()
-    thin = built.material(study.material).cable(_THIN_M)  # straight cables are of any thickness
-    return tuple(adrift_in(built.robot, study.workspace, study.load_cases, thin))
+def equilibrium_losses(
+    robot: Robot, workspace: Workspace, cases: Sequence[LoadCase], cable: Cable
+) -> Iterator[EquilibriumLoss]:
+    """Yield the load cases in which straight cables hold fewer poses than at rest."""
+    samples = _REDUNDANT_SAMPLES if robot.is_redundant else _EQUILIBRIUM_SAMPLES
+
+    def holds(robot: Robot, places: FloatArray) -> BoolArray:
+        return np.isfinite(solve_massless(robot, Poses.at(places)).largest_tension_N)
+
+    def force_N(body: Platform) -> FloatArray:
+        return body.wrench_N[:3] + body.centre_force_N + body.drag_force_N
+
+    for case in cases:
+        is_still = case.wind is None and case.acceleration_m_per_s2 == 0.0
+        if is_still and case.wrench_set is None:
+            continue
+        space = workspace.of_case(case)
+        places = np.concatenate([space.space.landmarks(), space.thinned(samples)])
+        places = places[holds(robot, places)]
+        losses = []
+        for loaded in replace(case, cable_lost=None).on(robot, cable):
+            is_held = holds(loaded.robot, places)
+            example = places[int(is_held.argmin())] if len(places) else np.full(3, np.nan)
+            share = float((~is_held).mean()) if len(places) else 0.0
+            push = force_N(loaded.robot.platform) - force_N(robot.platform)
+            losses.append(EquilibriumLoss(loaded, share, example, float(np.linalg.norm(push))))
+        worst = max(losses, key=lambda loss: loss.share)
+        if worst.share > 0.0:
+            yield worst
 
 
 def modulus_utilisation(candidate: Candidate) -> tuple[float, float]:
@@ -222,71 +243,67 @@ def modulus_utilisation(candidate: Candidate) -> tuple[float, float]:
 
 
 def neighbours_utilisation(candidate: Candidate) -> tuple[list[Size], float]:
-    """Return the sizes beside one in its table, and what it is used to if it were as they are.
+    """Return the sizes next to one in its table, and its utilisation if it were as they are.
 
     With their breaking load and mass over d², at its worst pose. A size that the catalogue doubts
     is no neighbour.
     """
     size, governing, sizes = candidate.size, candidate.governing, candidate.grade.sizes
     thinner = [s for s in sizes if s.diameter_m < size.diameter_m and not s.doubt][-1:]
-    beside = thinner + [s for s in sizes if s.diameter_m > size.diameter_m and not s.doubt][:1]
-    if not beside:
+    neighbours = thinner + [s for s in sizes if s.diameter_m > size.diameter_m and not s.doubt][:1]
+    if not neighbours:
         return [], math.nan
-    strength = mean(s.breaking_stress_Pa for s in beside) / size.breaking_stress_Pa
-    mass = mean(s.density_kg_per_m3 for s in beside) / size.density_kg_per_m3
+    strength = mean(s.breaking_stress_Pa for s in neighbours) / size.breaking_stress_Pa
+    mass = mean(s.density_kg_per_m3 for s in neighbours) / size.density_kg_per_m3
     robot, cable = governing.loaded.bare
     allowable_N = strength * cable.allowable_tension_N
-    alike = replace(cable.with_rope_scaled(mass), allowable_tension_N=allowable_N)
-    loaded = governing.loaded.on(robot, alike)
-    return beside, governing.tension_N(loaded) / loaded.cable.allowable_tension_N
+    similar = replace(cable.with_rope_scaled(mass), allowable_tension_N=allowable_N)
+    loaded = governing.loaded.on(robot, similar)
+    return neighbours, governing.tension_N(loaded) / loaded.cable.allowable_tension_N
 
 
-def _massless_choice(analysis: Analysis, outcome: GradeOutcome) -> MasslessChoice | None:
-    workspace, survey = analysis.study.workspace, analysis.workspace
-    if workspace is None or survey is None or survey.massless is None:
+def _massless_choice(
+    analysis: Analysis, survey: WorkspaceMap, outcome: GradeOutcome
+) -> MasslessChoice | None:
+    if survey.massless is None:
         return None
     if analysis.study.load_cases or analysis.assignment.has_groups:
         return None
     needed_N = survey.massless.max_tension_N
     for candidate in outcome.candidates:
         if candidate.cable.allowable_tension_N >= needed_N:
-            proved = candidate.verification
-            if not proved.is_refined:
-                proved = verify(analysis.built.robot, workspace, candidate.cable)
-            return MasslessChoice(candidate, proved)
+            verification = candidate.verification
+            if not verification.is_refined:
+                verification = verify(analysis.built.robot, survey.workspace, candidate.cable)
+            return MasslessChoice(candidate, verification)
     return None
 
 
-def _other_policy(analysis: Analysis) -> OtherPolicy | None:
-    workspace, survey, built = analysis.study.workspace, analysis.workspace, analysis.built
-    if workspace is None or survey is None or survey.census.hangs_below == 0:
+def _other_policy(analysis: Analysis, survey: WorkspaceMap) -> OtherPolicy | None:
+    if survey.census.hangs_below == 0:
         return None
+    built, workspace = analysis.built, survey.workspace
     policy: HangsBelow = "exclude" if workspace.hangs_below == "include" else "include"
-    changed = replace(_few(built.robot, workspace), hangs_below=policy)
+    changed = replace(_with_fewer_samples(built.robot, workspace), hangs_below=policy)
     material = built.material(analysis.study.material)
     return OtherPolicy(policy, map_workspace(built.robot, changed, material, with_massless=False))
 
 
-def _hanging(analysis: Analysis) -> float | None:
-    workspace, survey = analysis.study.workspace, analysis.workspace
-    if workspace is None or survey is None:
-        return None
-    if analysis.qualities is None or not analysis.assignment.is_found:
+def _hanging(analysis: Analysis, survey: WorkspaceMap) -> float:
+    if not analysis.assignment.is_found:
         return survey.census.hangs_below / survey.census.samples
-    robot, cable = analysis.built.robot, analysis.qualities.cable.cable
+    robot, cable = analysis.built.robot, analysis.assignment.cable
     hangs = [
         is_left_out(solve_sagging(robot, Poses.at(positions), cable), "exclude")
-        for positions in _few(robot, workspace).places()
+        for positions in _with_fewer_samples(robot, survey.workspace).places()
     ]
     return float(np.concatenate(hangs).mean())
 
 
-def _few(robot: Robot, workspace: Workspace) -> Workspace:
-    """Return the same with fewer positions where each pose takes long."""
-    if is_quick(robot):
-        largest = _MOST_SAMPLES
-    else:
-        largest = max(_FEW_PLACES // workspace.orientations.count, _FEW_POSITIONS)
+def _with_fewer_samples(robot: Robot, workspace: Workspace) -> Workspace:
+    largest = _MAX_SAMPLES
+    if not is_quick(robot):
+        largest = max(_SLOW_PLACES // workspace.orientations.count, _SLOW_POSITIONS)
     return replace(workspace, samples=min(workspace.samples, largest))
 
 
@@ -324,23 +341,19 @@ def _remedies(analysis: Analysis) -> Remedies | None:
     )
 
 
-def _unserved(analysis: Analysis) -> Unserved | None:
-    workspace, survey = analysis.study.workspace, analysis.workspace
-    if workspace is None or survey is None or analysis.sweep_file is None:
-        return None
-    region = workspace.region
-    if survey.is_feasible or survey.sampled is None:
+def _unserved(survey: WorkspaceMap) -> Unserved | None:
+    if survey.file is None or survey.is_feasible or survey.sampled is None:
         return None
     depth_m = inradius_m = 0.0
     lowest_m = np.inf
-    with open_sweep(analysis.sweep_file) as sweep:
+    with open_sweep(survey.file) as sweep:
         for start in range(0, sweep.sizes["sample"], _CHUNK):
             part = sweep.isel(sample=slice(start, start + _CHUNK))
             position = part["position"].values
-            distance = region.depth_m(position)
+            distance = survey.workspace.region.depth_m(position)
             if distance is None:
                 return None
-            unserved = ~np.isin(part["verdict"].values, workspace.served)
+            unserved = ~np.isin(part["verdict"].values, survey.workspace.served)
             depth_m = max(depth_m, float(distance[unserved].max(initial=0.0)))
             inradius_m = max(inradius_m, float(distance.max(initial=0.0)))
             lowest_m = min(lowest_m, float(position[unserved, 2].min(initial=np.inf)))

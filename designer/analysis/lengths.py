@@ -1,7 +1,8 @@
-"""Unstrained lengths and tensions at given poses, with the cables of the design."""
+"""The cables of the design in figures: lengths and tensions at poses, and for the workshop."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -11,11 +12,14 @@ from designer import checked
 from designer.analysis.analyse import Analysis
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.documents.plain import csv_text
+from designer.grades.grade import Grade, Size
 from designer.measured.assign import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
+from designer.model.winches import DEAD_TURNS, Drum
 from designer.progress import Advance
-from designer.selection.qualities import DesignCable
+from designer.selection.assignment import DesignCable
+from designer.selection.reeving import Spooled, spooled_on
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.rest import find_equilibria, spread_poses
 from designer.study import Study, declared_settings
@@ -23,7 +27,7 @@ from designer.study import Study, declared_settings
 _STARTS, _ROWS_AT_ONCE = 48, 16
 _FULL = 1.0 + 1e-9
 """Utilisation where a cable was made for a pose, with what rounding adds."""
-_MOST_ROWS = 12
+_MAX_NAMED_ROWS = 12
 """Rows that are named one by one."""
 
 
@@ -219,5 +223,76 @@ def named_rows(which: BoolArray, fault: str, what: str = "poses") -> Iterator[st
     """Yield how many rows have a fault, and the first of them by number; nothing where none has."""
     rows = [row for row, is_affected in enumerate(which, start=1) if is_affected]
     if rows:
-        named = ", ".join(map(str, rows[:_MOST_ROWS])) + " …" * (len(rows) > _MOST_ROWS)
+        named = ", ".join(map(str, rows[:_MAX_NAMED_ROWS])) + " …" * (len(rows) > _MAX_NAMED_ROWS)
         yield f"{len(rows)} of {len(which)} {what} {fault}: row {named}"
+
+
+@dataclass(frozen=True, slots=True)
+class FabricatedCable:
+    """One cable: what it is of, and its longest and shortest unstrained length [m]."""
+
+    number: int
+    grade: Grade
+    size: Size
+    longest_m: float
+    shortest_m: float
+    drum: Drum | None  # That of the study, and the rope on it
+    spooled: Spooled | None
+
+    @property
+    def turns(self) -> float:
+        """Turns of the study's drum, or the suggested one, from the shortest to the longest."""
+        if self.spooled is not None:
+            return self.spooled.turns
+        return self.stroke_m / self.grade.drum_turn_m(self.size)
+
+    @property
+    def stroke_m(self) -> float:
+        """How far the cable runs."""
+        return self.longest_m - self.shortest_m
+
+    @property
+    def suggested_drum_m(self) -> float:
+        """Diameter of drums and sheaves that the rope's table suggests; NaN without one."""
+        ratio = self.grade.sheave_ratio
+        return math.nan if ratio is None else ratio.suggested * self.size.diameter_m
+
+    @property
+    def least_drum_m(self) -> float:
+        """The least diameter that the rope's table allows; NaN without one."""
+        ratio = self.grade.sheave_ratio
+        return math.nan if ratio is None else ratio.minimum * self.size.diameter_m
+
+    @property
+    def order_m(self) -> float:
+        """The longest length with the dead turns, rounded up to a decimetre."""
+        turn_m, dead_turns = self.grade.drum_turn_m(self.size), DEAD_TURNS
+        if self.drum is not None:
+            turn_m, dead_turns = self.drum.turn_m(self.size.diameter_m), self.drum.dead_turns
+        dead_m = 0.0 if math.isnan(turn_m) else dead_turns * turn_m
+        return math.ceil(10.0 * (self.longest_m + dead_m)) / 10.0
+
+
+def spooled_of(analysis: Analysis) -> tuple[Spooled, ...]:
+    """Return what becomes of each rope on its drum; nothing without ropes, or without a drum."""
+    drum, assignment = analysis.built.robot.winches.drum, analysis.assignment
+    if drum is None or not assignment.is_found:
+        return ()
+    lengths = assignment.verification.longest_m, assignment.verification.shortest_m
+    return spooled_on(drum, *lengths, [rope.size.diameter_m for rope in assignment.by_cable])
+
+
+def fabricated_cables(analysis: Analysis) -> list[FabricatedCable]:
+    """Return each cable of the design; none where no ropes were found or asked for."""
+    if not analysis.assignment.is_found:
+        return []
+    verification = analysis.assignment.verification
+    lengths = zip(verification.longest_m.tolist(), verification.shortest_m.tolist(), strict=True)
+    ropes = zip(analysis.assignment.by_cable, lengths, strict=True)
+    drum, on_drum = analysis.built.robot.winches.drum, spooled_of(analysis)
+    return [
+        FabricatedCable(
+            k + 1, rope.grade, rope.size, *ends_m, drum, on_drum[k] if on_drum else None
+        )
+        for k, (rope, ends_m) in enumerate(ropes)
+    ]

@@ -1,4 +1,4 @@
-"""Where the numbers of an analysis come from."""
+"""Where the numbers of a report come from, also of reports that need no analysis."""
 
 from __future__ import annotations
 
@@ -14,24 +14,12 @@ from designer.study import Study
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
-    """Where the numbers come from.
+    """Where the numbers come from."""
 
-    Parameters
-    ----------
-    version : str
-        Of this program.
-    libraries : tuple of (name, version)
-        What computed and drew them.
-    system : str
-        Operating system and Python.
-    created : datetime
-        When the analysis was started.
-    """
-
-    version: str
-    libraries: tuple[tuple[str, str], ...]
-    system: str
-    created: datetime
+    version: str  #: of this program
+    libraries: tuple[tuple[str, str], ...]  #: name and version of what computed and drew them
+    system: str  #: operating system and Python
+    created: datetime  #: when the analysis was started
 
     @classmethod
     def now(cls, study: Study | None = None) -> Provenance:

@@ -26,37 +26,20 @@ _CLIMB_AFTER_TURNING = replace(ONE_CLIMB, per_edge=0, per_face=0, inside=0, tole
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reaction:
-    """What a cable does to the support of its exit point, where one size of it is largest.
+    """What a cable does to the support of its exit point, where one size of it is largest."""
 
-    Parameters
-    ----------
-    mast : int
-        The exit point, from 1.
-    load_case, extreme : str
-        In which load case, and one of `EXTREMES`.
-    size_N : float
-        That size [N].
-    force_N : array (3,)
-        All known branches of the cable together, world frame [N].
-    platform_branch_N, winch_branch_N : array (3,)
-        Each branch; None where nothing tells where the winch stands [N].
-    exit_point_m : array (3,)
-        Where the cable leaves the base, world frame [m].
-    loaded : Loaded
-        In which direction of wind and inertia force, or without which cable.
-    place : array (n_coordinates,)
-        Where the platform is, see `designer.model.space` [m, rad].
-    """
-
-    mast: int
-    load_case: str
-    extreme: str
-    size_N: float
-    force_N: FloatArray
-    platform_branch_N: FloatArray
+    mast: int  #: the exit point, from 1
+    load_case: str  #: in which load case
+    extreme: str  #: one of `EXTREMES`
+    size_N: float  #: that size [N]
+    force_N: FloatArray  #: (3,) all known branches of the cable together, world frame [N]
+    platform_branch_N: FloatArray  #: (3,) of the branch to the platform [N]
+    #: (3,) of the branch to the winch; None where nothing tells where that stands [N]
     winch_branch_N: FloatArray | None
-    exit_point_m: FloatArray
+    exit_point_m: FloatArray  #: (3,) where the cable leaves the base, world frame [m]
+    #: in which direction of wind and inertia force, or without which cable
     loaded: Loaded = field(metadata={"json": lambda loaded: {"direction": loaded.words or None}})
+    #: (n_coordinates,) where the platform is, see `designer.model.space` [m, rad]
     place: FloatArray = field(metadata={"json": named_place})
 
 

@@ -11,29 +11,25 @@ import numpy as np
 
 from designer.analysis.findings import neighbours_utilisation
 from designer.analysis.pose import PoseAnalysis
-from designer.effects.design import AsBuilt
 from designer.grades.grade import TRUST_MEANING
-from designer.model.cable import Cable, Cables
-from designer.model.load_case import STATIC, Loaded
+from designer.model.cable import Cable, Cables, Material
+from designer.model.load_case import STATIC
+from designer.model.robot import Robot
 from designer.model.verdict import Answer, Requirement, State, Verdict
-from designer.progress import Reporter
-from designer.selection.assignment import Assignment
+from designer.selection.assignment import Assignment, Qualities
 from designer.selection.candidate import Candidate
 from designer.selection.criteria import criteria_of, rope_diameter_m
-from designer.selection.family_need import CaseNeed
-from designer.selection.groups.result import GroupChoice
-from designer.selection.qualities import DesignCable
+from designer.selection.family import CaseNeed
+from designer.selection.groups import GroupChoice
+from designer.selection.reeving import drum_of, sheave_ratio_of, spooling_of
 from designer.selection.requirements import (
     CaseLoads,
     at_place,
-    drum_of,
     equilibrium_of,
     evaluate,
     extreme_lengths_m,
-    sheave_ratio_of,
 )
 from designer.selection.result import SelectionResult
-from designer.selection.spooling import spooling_of
 from designer.sizing.newton import size_poses
 from designer.statics.free_motion import FreeMotion
 from designer.study import Selection, Study
@@ -97,16 +93,16 @@ _FAMILY = "a cable of the configured family holds"
 def requirements_of(analysis: Analysis) -> tuple[Requirement, ...]:
     """Return all that the study of an analysis asks for."""
     study, built = analysis.study, analysis.built
-    pose, workspace = analysis.pose, analysis.workspace
-    assignment, needs = analysis.assignment, analysis.needs
-    design = None if analysis.qualities is None else analysis.qualities.cable
+    pose, survey = analysis.pose, analysis.workspace
+    assignment, needs, design = analysis.assignment, analysis.needs, analysis.qualities
     requirements: list[Requirement] = []
     if pose is not None:
         requirements.append(_pose(pose, analysis.free_motion))
     if needs:
         requirements += map(_need, needs)
-    elif workspace is not None:
-        requirements.append(_workspace(study, built, workspace, analysis.free_motion))
+    elif survey is not None:
+        material = built.material(study.material)
+        requirements.append(_workspace(built.robot, material, survey, analysis.free_motion))
     if assignment.rope is not None:
         requirements += assignment.rope.requirements
     elif study.selection is not None and assignment.has_groups:
@@ -117,7 +113,7 @@ def requirements_of(analysis: Analysis) -> tuple[Requirement, ...]:
         requirements.append(_no_rope(analysis.selection))
     # A rope for all cables brings its own; where there is none, the design is one of the family.
     if design is not None and (study.selection is None or assignment.has_groups):
-        requirements += _of_design(study, built, design, analysis.reporter)
+        requirements += _of_design(analysis, design)
     return tuple(requirements)
 
 
@@ -192,19 +188,19 @@ def _undecided(analysis: Analysis) -> list[str]:
 
     Each requirement where it comes nearest to failing.
     """
-    study, assignment = analysis.study, analysis.assignment
+    study, assignment, design = analysis.study, analysis.assignment, analysis.qualities
     borrows = any(rope.grade.elasticity.basis == "borrowed" for rope in assignment.ropes)
-    if not borrows or study.workspace is None:
+    if not borrows or design is None:
         return []
-    criteria = criteria_of(analysis.built.robot, study.workspace, study.selection)
+    criteria = criteria_of(design.robot, design.workspace, study.selection)
     by_id, failing = {criterion.id: criterion for criterion in criteria}, {}
     for requirement in analysis.requirements:
-        place, known = requirement.place, requirement.loaded
-        if place is None or known is None:
+        place, original = requirement.place, requirement.loaded
+        if place is None or original is None:
             continue
-        workspace = study.workspace.of_case(known.case)
+        workspace = design.workspace.of_case(original.case)
         for sign in (-1.0, 1.0):
-            loaded = replace(known, cable=_stretched(assignment, known.cable, sign))
+            loaded = replace(original, cable=_stretched(assignment, original.cable, sign))
             if requirement.id == "breaking_load":
                 largest_N = tension_demand(loaded, "include", place[None])[0]
                 fails = largest_N > loaded.cable.allowable_tension_N
@@ -248,13 +244,19 @@ def _pose(pose: PoseAnalysis, free: FreeMotion | None) -> Requirement:
 
 
 def _workspace(
-    study: Study, built: AsBuilt, workspace: WorkspaceMap, free: FreeMotion | None
+    robot: Robot, material: Material, survey: WorkspaceMap, free: FreeMotion | None
 ) -> Requirement:
-    state, remark, place = State.HOLDS, "", None
-    if not workspace.is_feasible:
-        state, remark = _why_not_feasible(study, built, workspace)
+    state, remark, pose = State.HOLDS, "", survey.infeasible_pose
+    if not survey.is_feasible:
+        unserved = survey.workspace.not_served(survey.census.statuses)
+        if not unserved and pose is not None:
+            sizing = size_poses(robot, pose, material)
+            unserved = [Verdict(int(sizing.statics.verdict))]
+        state, remark = State.FAILS, "every pose is left out"
+        if unserved:  # of these one that proves that a pose is not held
+            worst = next((v for v in unserved if v.is_proved), unserved[0])
+            state, remark = worst.state, worst.clause
         remark = remark if free is None else free.clause
-        place = None if workspace.infeasible_pose is None else workspace.infeasible_pose.place
     return Requirement(
         id="workspace",
         title="Configured family",
@@ -262,22 +264,9 @@ def _workspace(
         source="cable, workspace.region",
         state=state,
         load_case=STATIC.name,
-        place=place,
+        place=None if pose is None else pose.place,
         remark=remark,
     )
-
-
-def _why_not_feasible(study: Study, built: AsBuilt, workspace: WorkspaceMap) -> tuple[State, str]:
-    """Return whether it is proved that a pose is not held, and what is known of it."""
-    assert study.workspace is not None
-    unserved = study.workspace.not_served(workspace.census.statuses)
-    if not unserved:
-        if workspace.infeasible_pose is None:
-            return State.FAILS, "every pose is left out"
-        sizing = size_poses(built.robot, workspace.infeasible_pose, built.material(study.material))
-        unserved = [Verdict(int(sizing.statics.verdict))]
-    worst = next((v for v in unserved if v.is_proved), unserved[0])
-    return worst.state, worst.clause
 
 
 def _need(need: CaseNeed) -> Requirement:
@@ -363,42 +352,22 @@ def _of_groups(selection: Selection, assignment: Assignment) -> Iterator[Require
         yield from sheave_ratio_of(rope.grade, rope.size, selection)
 
 
-def _of_design(
-    study: Study, built: AsBuilt, design: DesignCable, reporter: Reporter
-) -> Iterator[Requirement]:
-    """Yield what is asked beside strength of groups of cables, or of the configured family."""
-    workspace = study.workspace
-    assert workspace is not None
-    criteria = criteria_of(built.robot, workspace, study.selection)
-    loads = design_loads(study, built, design)
-    with reporter.task("requirements", len(loads)) as advance:
+def _of_design(analysis: Analysis, design: Qualities) -> Iterator[Requirement]:
+    """Yield what is required beside strength of groups of cables, or of the configured family."""
+    selection, loads, drum = analysis.study.selection, analysis.loads, design.robot.winches.drum
+    criteria = criteria_of(design.robot, design.workspace, selection)
+    with analysis.reporter.task("requirements", len(loads)) as advance:
         for evaluation in evaluate(loads, criteria, advance):
             yield evaluation.requirement
-    has_capacity = (
-        study.selection is not None and study.selection.limits.drum_capacity_m is not None
-    )
-    drum = built.robot.winches.drum
+    has_capacity = selection is not None and selection.limits.drum_capacity_m is not None
     if has_capacity or drum is not None:
-        each = [
+        ends = [
             extreme_lengths_m(CaseLoads(of_case.workspace, (direction,)))
             for of_case in loads
             for direction in of_case.directions
         ]
-        longest, shortest = zip(*each, strict=True)
+        longest, shortest = zip(*ends, strict=True)
         lengths = np.fmax.reduce(longest), np.fmin.reduce(shortest)
-        yield from drum_of(*lengths, study.selection)
-        rope_m = np.broadcast_to(rope_diameter_m(design.cable), lengths[0].shape)
+        yield from drum_of(*lengths, selection)
+        rope_m = np.broadcast_to(rope_diameter_m(design.cable.cable), lengths[0].shape)
         yield from spooling_of(drum, *lengths, rope_m.tolist())
-
-
-def design_loads(study: Study, built: AsBuilt, design: DesignCable) -> list[CaseLoads]:
-    """Return the load cases with the cables of the design, each in all its directions."""
-    workspace, robot = study.workspace, built.robot
-    assert workspace is not None
-    cable = cast(Cable, design.cable)  # or `Cables`, which have the same figures as arrays
-    if not study.load_cases:
-        return [CaseLoads(workspace, (Loaded(STATIC, (robot, cable), robot, cable),))]
-    return [
-        CaseLoads(workspace.of_case(case), tuple(case.on(robot, cable)))
-        for case in study.load_cases
-    ]

@@ -1,30 +1,36 @@
-"""``result.json``: the results for scripts, under stable names; a missing number is null."""
+"""``result.json`` and ``candidates.csv``: the results for scripts, under stable names.
+
+A missing number is null, or an empty cell.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
 from designer import __version__
 from designer.analysis.analyse import Analysis
-from designer.analysis.carries import carries_dict
-from designer.analysis.fabrication import spooled_of
-from designer.analysis.modes import PlatformModes
+from designer.analysis.lengths import spooled_of
 from designer.analysis.pose import PoseAnalysis
-from designer.analysis.selection_json import selection_dict
-from designer.documents.plain import RESULT_FORMAT, Json, lies_in, plain, record
-from designer.model.space import named_place
+from designer.analysis.sensitivity import sensitivity_dict
+from designer.arrays import FloatArray
+from designer.documents.plain import RESULT_FORMAT, Json, csv_text, is_requested, plain, record
+from designer.model.space import named_place, rotation_vector_of
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
+from designer.selection.assignment import Assignment
+from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult
+from designer.selection.groups import GroupChoice
+from designer.selection.result import GradeOutcome, SelectionResult
 from designer.statics.cable_loss import Fate
 from designer.study import Study
 from designer.workspace.clearance import Interference
 
 _OF_THE_CHOICE = ("stiffness", "interference", "hanging")
-"""Of ``workspace``: told of the chosen rope, so that it has to be chosen."""
-_OF_CARRIES = ("sensitivities", "reserve", "sizes_beside", "first_failures")
+"""Of ``workspace``: of the chosen rope, so that it has to be chosen."""
+_OF_SENSITIVITY = ("sensitivities", "reserve", "sizes_beside", "first_failures")
 
 
 def result_dict(analysis: Analysis) -> Json:
@@ -33,7 +39,10 @@ def result_dict(analysis: Analysis) -> Json:
     What changes no answer and takes its time is computed where it is read, and empty elsewhere.
     """
     study, selection, is_read = analysis.study, analysis.selection, analysis.is_read
-    carries = any(map(is_read, _OF_CARRIES))
+    with_sensitivity = any(map(is_read, _OF_SENSITIVITY))
+    modes = analysis.modes if is_read("modes") or is_read("modes_at") else None
+    path = analysis.path if is_read("path") else None
+    uncertainty = analysis.uncertainty if is_read("uncertainty") else None
     return plain(
         {
             "format": RESULT_FORMAT,
@@ -45,16 +54,14 @@ def result_dict(analysis: Analysis) -> Json:
             "workspace": _workspace(analysis),
             "selection": selection_dict(selection, analysis.groups, analysis.own_material),
             **load_cases_dict(analysis),
-            **carries_dict(
-                analysis.carries if carries else None, analysis.group_slopes if carries else ()
+            **sensitivity_dict(
+                analysis.sensitivity if with_sensitivity else None,
+                analysis.group_slopes if with_sensitivity else (),
             ),
-            "uncertainty": (
-                analysis.uncertainty.to_dict()
-                if is_read("uncertainty") and analysis.uncertainty is not None
-                else None
-            ),
-            **(_modes(analysis.modes if is_read("modes") or is_read("modes_at") else None)),
-            "path": _path(analysis),
+            "uncertainty": uncertainty and uncertainty.to_dict(),
+            "modes": modes.modes if modes else [],
+            "modes_at": modes,
+            "path": path and path.to_dict(),
             "reactions": analysis.reactions if is_read("reactions") else [],
             "winches": spooled_of(analysis) if is_read("winches") else [],
             "findings": analysis.findings if is_read("findings") else None,
@@ -100,7 +107,7 @@ def size_dict(study: Study, pose: PoseAnalysis, keep: Sequence[str] | None = Non
 
     Of ``keep``, the paths that will be read; all if left out.
     """
-    with_rest = lies_in("pose.rest", keep)
+    with_rest = is_requested("pose.rest", keep)
     pose_alone = {"pose": _pose(study, pose, with_rest), "provenance": _origin(study)}
     return plain({"format": RESULT_FORMAT, "name": study.name, **pose_alone})
 
@@ -115,24 +122,20 @@ def _answer(analysis: Analysis) -> Json:
         {"id": requirement.id, "load_case": requirement.load_case, "state": requirement.state.value}
         for requirement in analysis.unmet
     ]
+    assignment = analysis.assignment
+    products = [  # one rope for all has no name
+        {"name": group.name or None, "cables": group.cables, **rope.ids}
+        for group, rope in zip(assignment.groups, assignment.ropes, strict=True)
+    ]
     return {
         "verdict": analysis.answer.value,
         "covers": analysis.terms.covers,
         "not_asked": analysis.terms.not_asked,
         "subject_to": analysis.terms.subject_to,
         "reasons": reasons,
-        **_products(analysis),
+        "products": products,
+        "total_mass_kg": assignment.total_mass_kg,
     }
-
-
-def _products(analysis: Analysis) -> Json:
-    """Return what to put on each cable, by groups of them: one rope for all has no name."""
-    assignment = analysis.assignment
-    products = [
-        {"name": group.name or None, "cables": group.cables, **rope.ids}
-        for group, rope in zip(assignment.groups, assignment.ropes, strict=True)
-    ]
-    return {"products": products, "total_mass_kg": assignment.total_mass_kg}
 
 
 def _pose(study: Study, pose: PoseAnalysis | None, with_rest: bool) -> Json | None:
@@ -140,7 +143,7 @@ def _pose(study: Study, pose: PoseAnalysis | None, with_rest: bool) -> Json | No
         return None
     statics, sizing = pose.sizing.statics, pose.sizing
     diameter, is_solved = sizing.diameter_m, bool(statics.is_solved)
-    how_surely = "proved" if sizing.is_thinnest else "found"  # that no thinner cable holds it
+    evidence = "proved" if sizing.is_thinnest else "found"  # that no thinner cable holds it
     return {
         "position_m": statics.poses.position_m,
         "in_workspace": None if study.workspace is None else not study.pose_outside,
@@ -157,7 +160,7 @@ def _pose(study: Study, pose: PoseAnalysis | None, with_rest: bool) -> Json | No
             "closure_residual_m": statics.closure_residual_m().max(),
             "equilibrium_residual_N": abs(statics.equilibrium_residual_N()).max(),
             "status": Verdict(int(statics.verdict)).label,
-            "thinnest": how_surely if is_solved else None,
+            "thinnest": evidence if is_solved else None,
         },
         "massless": {
             "diameter_m": sizing.massless_diameter_m,
@@ -179,12 +182,18 @@ def _pose(study: Study, pose: PoseAnalysis | None, with_rest: bool) -> Json | No
 def _workspace(analysis: Analysis) -> Json | None:
     if analysis.workspace is None:
         return None
+    qualities: Json = dict.fromkeys(_OF_THE_CHOICE)  # None where they were not looked at
+    for name in _OF_THE_CHOICE:
+        if analysis.is_read(f"workspace.{name}") and analysis.qualities is not None:
+            qualities[name] = getattr(analysis.qualities, name)
+    survey = qualities["interference"]
     return {
         **record(analysis.workspace),
         "orientations": _orientations(analysis.study),
         "section_m": analysis.section_m,
         "servable": analysis.servable if analysis.is_read("workspace.servable") else None,
-        **_qualities(analysis),
+        **qualities,
+        "interference": survey and _interference(survey),
     }
 
 
@@ -200,26 +209,6 @@ def _orientations(study: Study) -> Json | None:
         "law": None if law is None else law.words,
         "table": None if law is None or law.rows is None else np.hstack(law.rows),
     }
-
-
-def _qualities(analysis: Analysis) -> Json:
-    """Return stiffness and clearances; None where they were not looked at."""
-    of_the_choice = dict.fromkeys(_OF_THE_CHOICE)
-    for name in _OF_THE_CHOICE:
-        if analysis.is_read(f"workspace.{name}") and analysis.qualities is not None:
-            of_the_choice[name] = getattr(analysis.qualities, name)
-    interference = of_the_choice["interference"]
-    return of_the_choice | {"interference": interference and _interference(interference)}
-
-
-def _modes(modes: PlatformModes | None) -> Json:
-    return {"modes": [] if modes is None else modes.modes, "modes_at": modes}
-
-
-def _path(analysis: Analysis) -> Json | None:
-    if not analysis.is_read("path") or analysis.path is None:
-        return None
-    return analysis.path.to_dict()
 
 
 def _interference(survey: Interference) -> Json:
@@ -278,3 +267,136 @@ def _case(case: CaseResult) -> Json:
         "refined": verification.is_refined,
     }
     return figures | after
+
+
+_LISTS = {
+    "longest_m": "longest_{}_m",
+    "shortest_m": "shortest_{}_m",
+    "worst_pose": "worst_pose_{}_m",
+    "worst_rotation_vector": "worst_rotation_vector_{}_rad",
+}
+"""Columns of ``candidates.csv`` that one key becomes, numbered from 1."""
+
+
+def selection_dict(
+    selection: SelectionResult | None, choice: GroupChoice | None, own_material: str | None
+) -> Json | None:
+    """Return everything that ``result.json`` holds of a choice; None where none was to be made."""
+    if selection is None:
+        return None
+    rows = {
+        c: candidate_dict(c, o)
+        for o in (*selection.outcomes, *selection.alternatives)
+        for c in o.candidates
+    }
+    chosen, usable, untrusted = selection.chosen, selection.usable, selection.untrusted
+    prices, rival = selection.price_list, chosen and chosen.preferred_to
+    return {
+        "objectives": selection.objectives,
+        "preference": {
+            "units": selection.prefer,
+            "instead_of": rival and rows[rival],
+            "why": selection.preference or None,
+        },
+        "currency": selection.currency,
+        "price_estimate": selection.price_estimate,
+        "price_list": prices
+        and {
+            "file": prices.name,
+            "currency": prices.currency,
+            "dates": prices.dates,
+            "prices": len(prices.offers),
+        },
+        "chosen": None if chosen is None else rows[chosen],
+        "reason": selection.reason,
+        "best_of_materials": [
+            {"material": c.grade.material} | rows[c]
+            for c in selection.best_of_materials(own_material)
+        ],
+        "untrusted": untrusted
+        and {**untrusted.ids, "total_mass_kg": untrusted.total_mass_kg}
+        | {"cost": untrusted.figures.cost},
+        "pareto": [rows[c] for c in selection.front],
+        "candidates": [rows[c] for c in selection.candidates],
+        "not_tried": selection.not_tried,
+        "exclusions": selection.exclusions,
+        "grades": selection.outcomes,
+        "alternatives": [rows[o.best] for o in selection.alternatives if o.best],
+        "usable": [record(size) | {"grade": usable.grade.id} for size in usable.sizes]
+        if usable
+        else [],
+        "groups": [] if choice is None else list(_groups(choice.chosen)),
+        "group_choice": choice,
+    }
+
+
+def candidate_dict(candidate: Candidate, outcome: GradeOutcome) -> Json:
+    """Return one candidate under the names that scripts rely on."""
+    verification, size, cable = candidate.verification, candidate.size, candidate.cable
+    return {
+        **candidate.ids,
+        "diameter_m": size.diameter_m,
+        "continuous_diameter_m": outcome.continuous_diameter_m,
+        "max_tension_N": verification.max_tension_N,
+        "utilisation": verification.utilisation,
+        "minimum_breaking_load_N": size.minimum_breaking_load_N,
+        "efficiency": candidate.efficiency,
+        "allowable_tension_N": cable.allowable_tension_N,
+        "linear_mass_kg_per_m": size.linear_density_kg_per_m,
+        "as_built_linear_mass_kg_per_m": cable.mean_density_kg_per_m,
+        "axial_stiffness_N": cable.axial_stiffness_N,
+        "total_mass_kg": candidate.total_mass_kg,
+        "drum_diameter_m": candidate.figures.drum_diameter_m,
+        "cost": candidate.figures.cost,
+        "stiffness_N_per_m": candidate.figures.stiffness_N_per_m,
+        "longest_m": verification.longest_m,
+        "shortest_m": verification.shortest_m,
+        **_place(verification.worst_place),
+        "verified": candidate.verified,
+        "refined": verification.is_refined,
+        "standing": candidate.standing,
+        "why": candidate.reason,
+        "outcome": outcome.outcome,
+        "trust": candidate.grade.trust,
+        "doubt": size.doubt,
+    }
+
+
+def _place(place: FloatArray) -> Json:
+    return {"worst_pose": place[:3], "worst_rotation_vector": rotation_vector_of(place)}
+
+
+def _groups(chosen: Assignment) -> Iterator[Json]:
+    verification = chosen.verification
+    for k, (group, rope) in enumerate(zip(chosen.groups, chosen.ropes, strict=True)):
+        yield {
+            "name": group.name,
+            "cables": group.cables,
+            **rope.ids,
+            "diameter_m": rope.size.diameter_m,
+            "allowable_tension_N": rope.cable.allowable_tension_N,
+            "linear_mass_kg_per_m": rope.size.linear_density_kg_per_m,
+            "axial_stiffness_N": rope.cable.axial_stiffness_N,
+            "utilisation": verification.utilisation[k],
+            "longest_m": verification.longest_m[[c - 1 for c in group.cables]],
+            **_place(verification.worst_place[k]),
+        }
+
+
+def candidates_csv(selection: SelectionResult) -> str:
+    """Return every candidate as a row of a CSV table; a missing number is an empty cell."""
+    rows = []
+    for candidate, outcome in ((c, o) for o in selection.outcomes for c in o.candidates):
+        row: Json = {}
+        for name, value in plain(candidate_dict(candidate, outcome)).items():
+            parts = enumerate(value, start=1) if name in _LISTS else [(0, value)]
+            row |= {_LISTS.get(name, name).format(k): part for k, part in parts}
+        rows.append(row)
+    rows += [
+        {"grade": left.grade.id, "size_id": size.id, "diameter_m": size.diameter_m}
+        | {"standing": "not_tried", "why": left.reason, "trust": left.grade.trust}
+        for left in selection.not_tried
+        for size in left.sizes
+    ]
+    names = list(rows[0]) if rows else ["grade", "size_id"]
+    return csv_text([names, *([row.get(name) for name in names] for row in rows)])

@@ -31,7 +31,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from designer.analysis.sensitivities import payload_scaled
+from designer.analysis.sensitivity import payload_scaled
 from designer.arrays import FloatArray
 from designer.documents.plain import Json, record
 from designer.effects.design import AsBuilt
@@ -45,7 +45,7 @@ from designer.model.workspace import Workspace
 from designer.progress import Advance, Reporter
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult
-from designer.selection.efficiency import Allowance
+from designer.selection.reeving import Allowance
 from designer.selection.result import SelectionResult
 from designer.statics.geometry import upright_situation
 from designer.statics.sizes import add_slowly, is_quick, meet

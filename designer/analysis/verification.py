@@ -27,33 +27,16 @@ _SAME_END = 1e-8
 
 @dataclass(frozen=True, slots=True)
 class SecondAnswer:
-    """One number, ours and by another method.
+    """One number, ours and by another method."""
 
-    Parameters
-    ----------
-    method : str
-        What found the other one.
-    quantity : str
-        What it is, and at which pose.
-    unit : str
-        Of both, SI.
-    ours, theirs : float
-        NaN where the other method found nothing, see ``remark``.
-    tolerance : float
-        Difference up to which the two agree.
-    remark : str
-        Why there is nothing to compare; empty where there is.
-    may_be_more : bool
-        Whether theirs may be larger: a thicker cable that also holds refutes no thinner one.
-    """
-
-    method: str
-    quantity: str
-    unit: str
+    method: str  #: what found the other one
+    quantity: str  #: what it is, and at which pose
+    unit: str  #: of both, SI
     ours: float
-    theirs: float
-    tolerance: float = field(metadata={"json": None})
-    remark: str = ""
+    theirs: float  #: NaN where the other method found nothing, see ``remark``
+    tolerance: float = field(metadata={"json": None})  #: difference up to which the two agree
+    remark: str = ""  #: why there is nothing to compare; empty where there is
+    #: whether theirs may be larger: a thicker cable that also holds refutes no thinner one
     may_be_more: bool = field(default=False, metadata={"json": None})
 
     also_in_files: ClassVar = ("difference",)

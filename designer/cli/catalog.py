@@ -74,10 +74,12 @@ def catalog_list(
     Example:  designer catalog list --construction 7x19 --diameter 6mm
     """
     from designer.cli.tables import print_grades
-    from designer.grades.listing import Wanted, listed, split_nominal
+    from designer.grades.listing import GradeFilter, listed, split_nominal
 
     catalogue = _loaded(no_plugins)
-    criteria = Wanted(construction, _material(material, catalogue), maker, _diameter_m(diameter))
+    criteria = GradeFilter(
+        construction, _material(material, catalogue), maker, _diameter_m(diameter)
+    )
     products, computed = split_nominal(criteria.among(catalogue.grades))
     listed_grades, further = (computed, products) if nominal else (products, computed)
     if as_json:

@@ -18,10 +18,7 @@ import typer
 from designer import __version__
 from designer.cli.catalog import catalog
 from designer.cli.compare import compare
-from designer.cli.export import export
-from designer.cli.import_robot import import_robot
 from designer.cli.lengths import lengths, pose
-from designer.cli.optimise import optimise
 from designer.cli.options import (
     INTERRUPTED,
     NEGATIVE_ANSWER,
@@ -39,7 +36,6 @@ from designer.cli.options import (
 )
 from designer.cli.plan import write_plan
 from designer.cli.schema import schema, write_with_schema
-from designer.cli.sweep import sweep
 from designer.errors import (
     DesignerError,
     InputError,
@@ -95,10 +91,6 @@ app.add_typer(catalog, name="catalog")
 app.command()(lengths)
 app.command()(pose)
 app.command()(compare)
-app.command()(sweep)
-app.command()(optimise)
-app.command("import")(import_robot)
-app.command()(export)
 app.command()(schema)
 
 

@@ -56,7 +56,7 @@ def write_plan(
     from designer.analysis.lengths import Lengths
     from designer.diagnosis.plan import plan
     from designer.report.plan import write_plan_report
-    from designer.selection.qualities import DesignCable
+    from designer.selection.assignment import DesignCable
 
     with output_folder(folder) as building, ProgressBars("planning") as bars:
         if is_table:

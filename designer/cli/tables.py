@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from designer.analysis.pose import PoseAnalysis
     from designer.diagnosis.check import Check
     from designer.diagnosis.result import Diagnosis, Estimate
-    from designer.selection.groups.result import GroupChoice
+    from designer.selection.groups import GroupChoice
     from designer.selection.result import SelectionResult
     from designer.study import Selection, Study
     from designer.workspace.sweep import WorkspaceMap
@@ -169,9 +169,9 @@ def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:
         yield "", escape(omissions)
     for condition in terms.subject_to:
         yield "  subject to", escape(f"{condition.what}. {condition.sentences}")
-    for adrift in analysis.findings.adrift if analysis.answer is Answer.NO else ():
-        words = f"straight cables cannot hold the platform in {adrift.share:.1%} of the poses"
-        yield f"  '{escape(adrift.loaded.case.name)}'", bad(f"{words}, whatever the rope")
+    for loss in analysis.findings.equilibrium_losses if analysis.answer is Answer.NO else ():
+        words = f"straight cables cannot hold the platform in {loss.share:.1%} of the poses"
+        yield f"  '{escape(loss.loaded.case.name)}'", bad(f"{words}, whatever the rope")
     for requirement in analysis.unmet:
         labels = [] if requirement.cable is None else [f"cable {requirement.cable}"]
         if requirement.load_case != "all":

@@ -10,11 +10,11 @@ from designer.diagnosis.result import Diagnosis, RopeChoice, Use
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.cable import Cable
-from designer.model.uncertainty import MOST_DEVIATION, Uncertainty
+from designer.model.uncertainty import MAX_DEVIATION, Uncertainty
 from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate
 from designer.selection.cases import converge_stiffness
-from designer.selection.efficiency import Allowance, bending_efficiency
+from designer.selection.reeving import Allowance, bending_efficiency
 from designer.selection.select import best_product
 from designer.selection.verify import verify
 from designer.study import DeclaredEffect, Study, as_built_by
@@ -63,7 +63,7 @@ def spreads_of(diagnosis: Diagnosis) -> dict[str, float]:
     for fitted in of_machine:
         if fitted.effect.id == "platform_mass" and stated.payload is None:
             mass_kg = robot.platform.mass_kg + fitted.value
-            spreads["payload"] = min(fitted.std / mass_kg, MOST_DEVIATION)
+            spreads["payload"] = min(fitted.std / mass_kg, MAX_DEVIATION)
     points = [fitted for fitted in of_machine if fitted.effect.id == "anchor_offset"]
     is_whole = len(points) >= robot.exit_points_m.size
     if points and (is_whole or stated.exit_points_m is None):

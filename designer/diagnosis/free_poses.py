@@ -26,7 +26,7 @@ from designer.diagnosis.fit import HUBER, huber, jacobian, starting_vector
 from designer.diagnosis.problem import Kind, Predictor, Problem, kind_of, readings_of
 from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.effects.effect import Effect, Readings, Setting, frame_size_m
-from designer.model.measurements import EVEN, Measured, Noise
+from designer.model.measurements import UNIT_NOISE, Measured, Noise
 from designer.model.region import Region
 from designer.model.robot import Machine, Poses, Robot
 from designer.statics.forward import moved_poses
@@ -82,11 +82,11 @@ class FreePredictor(Predictor):
         every = np.ones(placed.n_rows, dtype=np.bool_)
         return placed if self.has_tensions else placed.without_readings(every)
 
-    def __call__(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+    def __call__(self, settings: Sequence[Setting], noise: Noise = UNIT_NOISE) -> Readings:
         """Return what the sensors would show with these effects, in the poses that suit them."""
         return self._remembered(settings, noise, self._nearest)[1]
 
-    def surroundings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+    def surroundings(self, settings: Sequence[Setting], noise: Noise = UNIT_NOISE) -> Readings:
         """Return lengths and tensions that a residual may go with."""
         return self(settings, noise)
 
@@ -170,7 +170,7 @@ class FreePredictor(Predictor):
         residual = np.where(np.isfinite(measured.readings), residual, 0.0)
         if measured.coordinates is None:
             return answer, residual
-        off = measured.coordinates.off(poses)
+        off = measured.coordinates.scaled_residuals(poses)
         answer = answer[0], replace(displayed, coordinates_off=off)
         return answer, np.hstack([residual, off])
 
@@ -217,7 +217,7 @@ def first_poses(machine: Machine, measured: Measured, region: Region) -> Poses:
     ]
     rotation = np.eye(3) if robot.is_point_mass else np.tile(np.eye(3), (measured.n_rows, 1, 1))
     poses = Poses(places[nearest], rotation)
-    return poses if measured.coordinates is None else measured.coordinates.put_into(poses)
+    return poses if measured.coordinates is None else measured.coordinates.imposed_on(poses)
 
 
 def absorbed_by_poses(
@@ -345,14 +345,16 @@ def _changes_read(robot: Robot, measured: Measured) -> FloatArray:
     steps_m = _motions(robot, poses.position_m)
     turns = np.zeros((7, 3))
     turns[3:6] = np.eye(3) / np.ptp(robot.exit_points_m, axis=0).max()
-    before = measured.coordinates.off(poses)
+    before = measured.coordinates.scaled_residuals(poses)
     columns = []
     for step_m, turn in zip(steps_m, _MOTION_STEP * turns, strict=True):
         rotation = poses.rotation
         if rotation.ndim > 2:
             rotation = Rotation.from_rotvec(turn).as_matrix() @ rotation
         moved = Poses(poses.position_m + _MOTION_STEP * step_m, rotation)
-        columns.append((measured.coordinates.off(moved) - before) * measured.coordinates.noise)
+        columns.append(
+            (measured.coordinates.scaled_residuals(moved) - before) * measured.coordinates.noise
+        )
     return np.reshape(columns, (7, -1)).T / _MOTION_STEP
 
 

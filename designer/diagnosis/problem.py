@@ -20,7 +20,7 @@ from designer.effects.effect import Effect, Readings, Setting, as_built
 from designer.effects.registry import SHIPPED, KnownEffects
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.load_case import AIR_DENSITY_KG_PER_M3
-from designer.model.measurements import EVEN, Measured, Noise
+from designer.model.measurements import UNIT_NOISE, Measured, Noise
 from designer.model.robot import Machine, Poses
 from designer.statics.balance import InternalBalance, imbalance, solve_taut, solve_underactuated
 from designer.statics.inverse import Statics, solve_sagging
@@ -339,7 +339,7 @@ class Predictor:
         robot = self.machine.robot
         return max(robot.n_cables - robot.degrees_of_freedom, 0)
 
-    def __call__(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+    def __call__(self, settings: Sequence[Setting], noise: Noise = UNIT_NOISE) -> Readings:
         """Return what the sensors would show with these effects."""
         if self.spare_cables:
             return self._remembered(settings, noise, self._with_forces)[1]
@@ -347,7 +347,7 @@ class Predictor:
         bodily = [s for s in settings if s.effect.on_readings is None]
         return self._shown(self._remembered(bodily, noise, self._physical)[1], settings)
 
-    def surroundings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+    def surroundings(self, settings: Sequence[Setting], noise: Noise = UNIT_NOISE) -> Readings:
         """Return lengths and tensions that a residual may go with.
 
         What is predicted; but internal forces that were taken from lengths alone hold their noise,
@@ -613,11 +613,11 @@ class SessionsPredictor(Predictor):
         poses = Poses(positions, np.concatenate(rotations) if is_turned else rotations[0])
         return replace(self.measured, poses=poses)
 
-    def __call__(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+    def __call__(self, settings: Sequence[Setting], noise: Noise = UNIT_NOISE) -> Readings:
         """Return what the sensors would show with these effects."""
         return _concatenated([part(acting, noise) for _, part, acting in self._acting(settings)])
 
-    def surroundings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+    def surroundings(self, settings: Sequence[Setting], noise: Noise = UNIT_NOISE) -> Readings:
         """Return lengths and tensions that a residual may go with."""
         return _concatenated(
             [part.surroundings(acting, noise) for _, part, acting in self._acting(settings)]

@@ -499,7 +499,7 @@ def rows_dict(outliers: Sequence[Outlier], measured: Measured) -> Json:
     if measured.coordinates is not None:
         answer |= {
             "poses": "measured in part",
-            "coordinates": measured.coordinates.left(measured.poses),
+            "coordinates": measured.coordinates.rms_residuals(measured.poses),
         }
     return answer
 

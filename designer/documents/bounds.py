@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from designer import units
-from designer.model.uncertainty import LEAST_DEVIATION, MOST_DEVIATION
+from designer.model.uncertainty import LEAST_DEVIATION, MAX_DEVIATION
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class Bound:
     reason: str
 
 
-MOST_CABLES = 64
+MAX_CABLES = 64
 
 MOST_SAMPLES = 10**7
 """Samples of a workspace: more take days, and the search between them finds more than they do."""
@@ -98,7 +98,7 @@ BOUNDS: Mapping[str, Bound] = {
     "relative scatter": Bound(
         units.RELATIVE,
         0.0,
-        MOST_DEVIATION,
+        MAX_DEVIATION,
         "from certain to where a normal quantity may come near zero",
     ),
     "half width": Bound(
@@ -133,5 +133,5 @@ _PARAMETERS: Mapping[str, tuple[float, str]] = {
 
 def parameter_bound(dimension: units.Dimension) -> Bound:
     """Return how far a parameter of an effect may lie from zero, by its unit."""
-    most, reason = _PARAMETERS.get(dimension.unit, (1e12, "as good as without end"))
-    return Bound(dimension, -most, most, reason)
+    limit, reason = _PARAMETERS.get(dimension.unit, (1e12, "as good as without end"))
+    return Bound(dimension, -limit, limit, reason)

@@ -155,7 +155,7 @@ def printable(name: str) -> str:
     return visible(name if len(name) <= 60 else name[:60] + "…").replace("\n", "?")
 
 
-MOST_VALUES = 200_000
+MAX_VALUES = 200_000
 DEEPEST_NESTING = 24
 _CONTROL_CODE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
@@ -312,8 +312,12 @@ class Composer:
                 self._refuse_nesting(line)
             if event.anchor is not None:
                 self._anchors[event.anchor] = None
-            is_mapping = isinstance(event, yaml.MappingStartEvent)
-            node = self._collection(event, self._fields(keys) if is_mapping else self._items(keys))
+            content = (
+                self._fields(keys)
+                if isinstance(event, yaml.MappingStartEvent)
+                else tuple(self._node(e, (*keys, k)) for k, e in enumerate(self._until_end()))
+            )
+            node = self._collection(event, content)
         if event.anchor is not None:
             self._anchors[event.anchor] = self.anchored[start] = node
         return node
@@ -323,17 +327,14 @@ class Composer:
         children = content if isinstance(content, tuple) else tuple(content.values())
         size = 1 + sum(child.size for child in children)
         height = 1 + max((child.height for child in children), default=0)
-        if size > MOST_VALUES:
-            problem = f"the aliases or lists here expand to more than {MOST_VALUES} values"
+        if size > MAX_VALUES:
+            problem = f"the aliases or lists here expand to more than {MAX_VALUES} values"
             _refuse(self._name, line, problem)
         if height > DEEPEST_NESTING:
             self._refuse_nesting(line)
         end = self._end if is_flow or not children else children[-1].end
         start = event.start_mark.index
         return Node(line, content, False, size, height, start, end, is_flow=is_flow)
-
-    def _items(self, keys: Keys) -> tuple[Node, ...]:
-        return tuple(self._node(event, (*keys, k)) for k, event in enumerate(self._until_end()))
 
     def _fields(self, keys: Keys) -> dict[str, Node]:
         import yaml

@@ -67,7 +67,7 @@ class Reader:
         """Tell editors what `read` takes."""
         return self.json_schema()
 
-    def read(self, given: object) -> Any:
+    def read(self, raw: object) -> Any:
         """Return the value, or refuse it."""
         raise NotImplementedError
 
@@ -89,15 +89,15 @@ class QuantityField(Reader):
     at_most: float | None = None
     reason: str = ""
 
-    def read(self, given: object) -> float:
+    def read(self, raw: object) -> float:
         """Return the SI value, or refuse it."""
         try:
-            value = units.read_quantity(given, self.dimension)
+            value = units.read_quantity(raw, self.dimension)
         except units.QuantityError as error:
             raise refusal(error.problem, error.expected) from None
         bound = self._broken_bound(value)
         if bound:
-            raise refusal(f"{units.describe(given)} is out of range", f"{bound}{self._hint(given)}")
+            raise refusal(f"{units.describe(raw)} is out of range", f"{bound}{self._hint(raw)}")
         return value
 
     def json_schema(self) -> JsonSchema:
@@ -105,16 +105,16 @@ class QuantityField(Reader):
         ends = {"exclusiveMinimum": self.above, "minimum": self.at_least, "maximum": self.at_most}
         if self.at_least is not None:
             del ends["exclusiveMinimum"]
-        given = {name: end for name, end in ends.items() if end is not None}
+        raw = {name: end for name, end in ends.items() if end is not None}
         text = {"type": "string", "pattern": _QUANTITY, "examples": [self.dimension.example]}
-        return {"anyOf": [{"type": "number", **given}, text], "x-unit": self.dimension.unit}
+        return {"anyOf": [{"type": "number", **raw}, text], "x-unit": self.dimension.unit}
 
-    def _hint(self, given: object) -> str:
+    def _hint(self, raw: object) -> str:
         """Return what a bare number was taken for, and what it may have been meant for."""
         unit = self.dimension.unit
-        if not unit or isinstance(given, str):
+        if not unit or isinstance(raw, str):
             return ""
-        meant = f"{given:.10g} mm" if isinstance(given, int | float) and unit == "m" else ""
+        meant = f"{raw:.10g} mm" if isinstance(raw, int | float) and unit == "m" else ""
         try:
             fits = meant and not self._broken_bound(units.read_quantity(meant, self.dimension))
         except units.QuantityError:
@@ -139,17 +139,17 @@ class WholeNumber(Reader):
     least: int
     most: int
 
-    def read(self, given: object) -> int:
+    def read(self, raw: object) -> int:
         """Return the number, or refuse it."""
         expected = f"a whole number from {self.least} to {self.most}"
         try:
-            value = units.read_quantity(given, units.NUMBER)
+            value = units.read_quantity(raw, units.NUMBER)
         except units.QuantityError as error:
             raise refusal(error.problem, expected) from None
         if value != int(value):
-            raise refusal(f"{units.describe(given)} is not a whole number", expected)
+            raise refusal(f"{units.describe(raw)} is not a whole number", expected)
         if not self.least <= value <= self.most:
-            raise refusal(f"{units.describe(given)} is out of range", expected)
+            raise refusal(f"{units.describe(raw)} is out of range", expected)
         return int(value)
 
     def json_schema(self) -> JsonSchema:
@@ -163,12 +163,12 @@ class FormatOf(Reader):
 
     newest: int
 
-    def read(self, given: object) -> int:
+    def read(self, raw: object) -> int:
         """Return the number, or refuse it."""
-        why = why_unreadable(given, self.newest)
+        why = why_unreadable(raw, self.newest)
         if why is not None:
             raise refusal(*why)
-        return given if isinstance(given, int) else 1
+        return raw if isinstance(raw, int) else 1
 
     def json_schema(self) -> JsonSchema:
         """Return the formats that are read."""
@@ -195,15 +195,13 @@ class _ListOf:
         """Tell editors how many items there may be."""
         return {**handler(schema), "minItems": self.least, "maxItems": self.most}
 
-    def _check(self, given: object) -> object:
-        if not isinstance(given, list | tuple):
-            raise refusal(
-                f"{units.describe(given)} is not a list", self.expected + in_brackets(given)
-            )
-        if not self.least <= len(given) <= self.most:
-            count = f"{len(given)} value" + "s" * (len(given) != 1)
+    def _check(self, raw: object) -> object:
+        if not isinstance(raw, list | tuple):
+            raise refusal(f"{units.describe(raw)} is not a list", self.expected + in_brackets(raw))
+        if not self.least <= len(raw) <= self.most:
+            count = f"{len(raw)} value" + "s" * (len(raw) != 1)
             raise refusal(f"the list has {count}", self.expected)
-        return given
+        return raw
 
 
 def reader_in(kind: Any, *, into_lists: bool = True) -> QuantityField | WholeNumber | None:
@@ -224,12 +222,22 @@ def list_of(least: int, greatest: int, expected: str) -> _ListOf:
 def only_word(word: str, expected: str) -> BeforeValidator:
     """Return the check that a text is the one word that may stand in place of a list."""
 
-    def check(given: object) -> object:
-        if given != word:
-            raise refusal(f"{units.describe(given)} is not known", expected + in_brackets(given))
-        return given
+    def check(raw: object) -> object:
+        if raw != word:
+            raise refusal(f"{units.describe(raw)} is not known", expected + in_brackets(raw))
+        return raw
 
     return BeforeValidator(check)
+
+
+def by_list(label: str, otherwise: str) -> Discriminator:
+    """Return what labels an alternative by whether a list is given."""
+    return Discriminator(lambda raw: label if isinstance(raw, list | tuple) else otherwise)
+
+
+def by_word(otherwise: str) -> Discriminator:
+    """Return what labels an alternative as a word, if a text is given, or otherwise."""
+    return Discriminator(lambda raw: "a word" if isinstance(raw, str) else otherwise)
 
 
 def in_brackets(value: object) -> str:
@@ -239,12 +247,12 @@ def in_brackets(value: object) -> str:
     return f"; a list stands in brackets: [{printable(value)}]"
 
 
-def _text(given: object) -> str:
-    if not isinstance(given, str):
-        raise refusal(f"{units.describe(given)} is not a text", "a text; quotes make a number one")
-    if not 1 <= len(given.strip()) <= LONGEST_TEXT:
-        raise refusal(f"the text has {len(given.strip())} characters", f"1 to {LONGEST_TEXT}")
-    return given
+def _text(raw: object) -> str:
+    if not isinstance(raw, str):
+        raise refusal(f"{units.describe(raw)} is not a text", "a text; quotes make a number one")
+    if not 1 <= len(raw.strip()) <= LONGEST_TEXT:
+        raise refusal(f"the text has {len(raw.strip())} characters", f"1 to {LONGEST_TEXT}")
+    return raw
 
 
 def _rising(ends: tuple[float, float], unit: str = "m") -> tuple[float, float]:
@@ -305,11 +313,11 @@ def mapping(value: object) -> object:
     return value
 
 
-def not_empty(given: dict[str, Any]) -> dict[str, Any]:
+def not_empty(raw: dict[str, Any]) -> dict[str, Any]:
     """Return the mapping unchanged, or refuse one without fields."""
-    if not given:
+    if not raw:
         raise refusal("the mapping is empty", "at least one group such as {front: [1, 2]}")
-    return given
+    return raw
 
 
 def bounded(name: str, kind: type[QuantityField] = QuantityField) -> QuantityField:
@@ -398,7 +406,7 @@ Band = Annotated[
 ]
 BandOrLeast = Annotated[
     Annotated[Band, Tag("a band")] | Annotated[Frequency, Tag("a frequency")],
-    Discriminator(lambda given: "a band" if isinstance(given, list | tuple) else "a frequency"),
+    by_list("a band", "a frequency"),
 ]
 Inertias = Annotated[tuple[Inertia, ...], list_of(3, 6, _INERTIAS), AfterValidator(_of_a_body)]
 Corner = Annotated[tuple[Length, Length], list_of(2, 2, "two lengths [x, y]")]
@@ -442,8 +450,8 @@ class Section(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _leave_out_empty_fields(cls, given: object) -> object:
-        return _without_empty(cls, given)
+    def _leave_out_empty_fields(cls, raw: object) -> object:
+        return _without_empty(cls, raw)
 
 
 class FileValue:
@@ -458,8 +466,8 @@ class FileValue:
 
     @model_validator(mode="before")
     @classmethod
-    def _leave_out_empty_fields(cls, given: object) -> object:
-        return _without_empty(cls, given)
+    def _leave_out_empty_fields(cls, raw: object) -> object:
+        return _without_empty(cls, raw)
 
 
 @cache
@@ -531,14 +539,14 @@ def _annotated_fields(section: Any) -> dict[str, FieldInfo]:
     return {info.alias or name: info for name, info in infos.items()}
 
 
-def _without_empty(section: AnySection, given: object) -> object:
+def _without_empty(section: AnySection, raw: object) -> object:
     """Take ``samples:`` with nothing after it as a field that is not given."""
-    if not isinstance(given, dict):
-        return given
+    if not isinstance(raw, dict):
+        return raw
     fields = fields_of(section)
     return {
         key: value
-        for key, value in given.items()
+        for key, value in raw.items()
         if value is not None or key not in fields or fields[key].is_required()
     }
 
@@ -550,23 +558,21 @@ def known_fields(schema: AnySection, loc: Sequence[Key]) -> Mapping[str, FieldIn
 
 
 def kind_at(schema: AnySection, loc: Sequence[Key]) -> Any:
-    """Return what the schema holds at a path, which may have pydantic's labels of alternatives."""
+    """Return what the schema holds at a path, which may have pydantic's labels of alternatives.
+
+    A place in a list keeps its kind.
+    """
     kind: Any = schema
     for key in loc:
-        kind = _step(kind, key)
+        plain = get_args(kind)[0] if get_origin(kind) is Annotated else kind
+        if get_origin(plain) is dict:
+            kind = get_args(plain)[1]
+        elif (branch := _branch(kind, key)) is not None:
+            kind = branch
+        else:
+            infos = (fields_of(section).get(str(key)) for section in _sections_in(kind))
+            kind = next((info.rebuild_annotation() for info in infos if info is not None), kind)
     return kind
-
-
-def _step(kind: Any, key: Key) -> Any:
-    """Return what the schema holds one step further; a place in a list keeps its kind."""
-    plain = get_args(kind)[0] if get_origin(kind) is Annotated else kind
-    if get_origin(plain) is dict:
-        return get_args(plain)[1]
-    branch = _branch(kind, key)
-    if branch is not None:
-        return branch
-    infos = (fields_of(section).get(str(key)) for section in _sections_in(kind))
-    return next((info.rebuild_annotation() for info in infos if info is not None), kind)
 
 
 def _branch(kind: Any, label: Key) -> Any:

@@ -21,7 +21,7 @@ from typing import Any, BinaryIO
 from designer.errors import InputError
 
 LARGEST_FILE_BYTES = 1_000_000
-_MOST_MEMORY_BYTES = 2 << 30
+_MAX_MEMORY_BYTES = 2 << 30
 _START = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
     "from designer.documents.opened import answer; answer(*json.loads(sys.argv[2]))"
@@ -106,11 +106,11 @@ def apart(read: Callable[..., Any], content: bytes, longest_s: int, *options: ob
     task = json.dumps((read.__module__, read.__name__, longest_s, *options))
     frugal = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # each thread takes of the memory
     with suppress(subprocess.SubprocessError):
-        done = subprocess.run(
+        process = subprocess.run(
             [sys.executable, "-P", "-c", _START, json.dumps(sys.path), task],
             input=content, capture_output=True, env=frugal, timeout=4 * longest_s, check=True,
         )  # fmt: skip
-        return json.loads(done.stdout.splitlines()[-1])
+        return json.loads(process.stdout.splitlines()[-1])
     return None
 
 
@@ -122,7 +122,7 @@ def answer(module: str, function: str, longest_s: int, *options: object) -> None
 
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_CPU, (longest_s, longest_s))
-        resource.setrlimit(resource.RLIMIT_AS, (_MOST_MEMORY_BYTES, _MOST_MEMORY_BYTES))
+        resource.setrlimit(resource.RLIMIT_AS, (_MAX_MEMORY_BYTES, _MAX_MEMORY_BYTES))
     print(json.dumps(read(sys.stdin.buffer.read(), *options)))
 
 

@@ -16,7 +16,7 @@ from designer.documents.xml import Element, xml_of
 from designer.errors import InputError
 
 LARGEST_PICTURE_BYTES = 1_000_000
-_MOST_PIXELS = 20_000_000
+_MAX_PIXELS = 20_000_000
 _LONGEST_S = 10
 _SVG = "image/svg+xml"
 _EXPECTED = "a PNG, JPEG or SVG file"
@@ -84,8 +84,8 @@ def _drawn(raw: bytes, kind: str) -> tuple[str, str] | tuple[()]:
         Image.MAX_IMAGE_PIXELS = None  # ours is told by its name
         try:
             picture = Image.open(io.BytesIO(raw), formats=("PNG", "JPEG"))
-            if picture.width * picture.height > _MOST_PIXELS:
-                return f"has more than {_MOST_PIXELS / 1e6:g} million pixels", "fewer"
+            if picture.width * picture.height > _MAX_PIXELS:
+                return f"has more than {_MAX_PIXELS / 1e6:g} million pixels", "fewer"
             picture.load()
         except Exception:
             return "cannot be decoded", _EXPECTED
@@ -93,11 +93,11 @@ def _drawn(raw: bytes, kind: str) -> tuple[str, str] | tuple[()]:
         import plutoprint
     except ImportError:
         return ()  # no wheel for this kind of machine: nothing of ours will draw it
-    asked: list[str] = []
+    requested: list[str] = []
 
     class Nothing(plutoprint.ResourceFetcher):
         def fetch_url(self, url: str) -> plutoprint.ResourceData:
-            asked.append(url)
+            requested.append(url)
             return plutoprint.ResourceData(b"", "text/plain")
 
     book = plutoprint.Book(plutoprint.PAGE_SIZE_A4)
@@ -105,4 +105,4 @@ def _drawn(raw: bytes, kind: str) -> tuple[str, str] | tuple[()]:
     address = f"data:{kind};base64,{base64.b64encode(raw).decode()}"
     book.load_html(f'<img style="max-width: 11rem" src="{address}">', base_url="report:/")
     book.write_to_pdf_stream(io.BytesIO())
-    return _LOADS if asked else ()
+    return _LOADS if requested else ()

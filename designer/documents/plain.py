@@ -57,7 +57,7 @@ def why_unreadable(value: object, newest: int, written_by: str = "") -> tuple[st
     return problem, f"format 1 to {newest}; this file needs cdpr-designer {needed}"
 
 
-def lies_in(part: str, paths: Sequence[str] | None) -> bool:
+def is_requested(part: str, paths: Sequence[str] | None) -> bool:
     """Tell whether a part of a file is one of some paths, or one lies in it; None are all."""
     return paths is None or any(f"{path}.".startswith(f"{part}.") for path in paths)
 
@@ -99,12 +99,12 @@ def record(result: Any) -> dict[str, Any]:
     in files as well are named by the class, in ``also_in_files``.
     """
     row: dict[str, Any] = {}
-    for each in fields(result):
-        shown, value = each.metadata.get("json", each.name), getattr(result, each.name)
-        if callable(shown):
-            row |= shown(value)
-        elif shown is not None:
-            row[shown] = value
+    for entry in fields(result):
+        key, value = entry.metadata.get("json", entry.name), getattr(result, entry.name)
+        if callable(key):
+            row |= key(value)
+        elif key is not None:
+            row[key] = value
     return row | {name: getattr(result, name) for name in getattr(result, "also_in_files", ())}
 
 

@@ -16,7 +16,7 @@ from designer.documents.opened import read_bytes
 from designer.errors import InputError
 
 DEEPEST_NESTING = 64
-MOST_ELEMENTS = 100_000
+MAX_ELEMENTS = 100_000
 
 
 @dataclass(slots=True)
@@ -98,9 +98,9 @@ class _Builder(ContentHandler):
         line = self._locator.getLineNumber() or 1
         element = Element(self._file, line, name, dict(attrs.items()))
         self._count += 1
-        if self._count > MOST_ELEMENTS or len(self._open) >= DEEPEST_NESTING:
+        if self._count > MAX_ELEMENTS or len(self._open) >= DEEPEST_NESTING:
             element.refuse(
-                f"more than {MOST_ELEMENTS} elements, or nested more than {DEEPEST_NESTING} deep"
+                f"more than {MAX_ELEMENTS} elements, or nested more than {DEEPEST_NESTING} deep"
             )
         if self._open:
             self._open[-1].children.append(element)

@@ -12,7 +12,7 @@ from pathlib import Path
 from designer.documents.opened import open_input, reason
 from designer.drafting.pdf_table import pdf_rows
 from designer.errors import Fault, InputError, visible
-from designer.grades.grade import DIMENSIONS, MOST_SIZES
+from designer.grades.grade import DIMENSIONS, MAX_SIZES
 from designer.measured.table import cells_of
 from designer.units import QuantityError, describe, read_quantity
 
@@ -135,8 +135,8 @@ class MakerTable:
             rows.append(MakerRow(line, " ".join(size_id.split()), numbers))
         if not rows:
             faults.append(Fault(self.name, None, "", "there is no size below the head", _EXPECTED))
-        if len(rows) > MOST_SIZES:
-            expected = f"at most {MOST_SIZES}"
+        if len(rows) > MAX_SIZES:
+            expected = f"at most {MAX_SIZES}"
             faults.append(Fault(self.name, None, "", f"there are {len(rows)} sizes", expected))
         if faults:
             raise InputError(faults)
@@ -227,7 +227,7 @@ def _lines(path: Path, page: int | None) -> list[tuple[int, list[str]]]:
             if is_pdf
             else cells_of(file, str(path))[0]
         )
-        return [*islice(rows, MOST_SIZES + 4 * _MOST_ABOVE)]
+        return [*islice(rows, MAX_SIZES + 4 * _MOST_ABOVE)]
 
 
 def _has_head(rows: Sequence[Sequence[str]]) -> bool:

@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.field import cable_curves_m, chords_m
-from designer.analysis.modes import PlatformModes, modes_at
+from designer.analysis.governing import PlatformModes, modes_at
+from designer.analysis.maps import cable_curves_m, chords_m
 from designer.analysis.requirements import Terms
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.explore.fields import Field
@@ -32,12 +32,11 @@ from designer.model.workspace import Workspace
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Proof
 from designer.report import format as fmt
-from designer.selection.candidate import Candidate, undominated
+from designer.selection.candidate import UNKNOWN, Candidate, CandidateFigures, undominated
 from designer.selection.cases import Cases, envelope, governing, refine_all
 from designer.selection.compare import burdens, is_undominated, rejection_words
-from designer.selection.groups.result import GroupChoice
-from designer.selection.groups.trials import verify_groups
-from designer.selection.objectives import UNKNOWN, CandidateFigures
+from designer.selection.groups import GroupChoice
+from designer.selection.refutation import verify_groups
 from designer.selection.result import SelectionResult
 from designer.selection.select import at_samples
 from designer.selection.verify import NOT_TRIED, Verification
@@ -53,7 +52,7 @@ from designer.statics.inverse import (
 from designer.statics.modes import frequencies_Hz
 from designer.statics.rest import resting_places
 from designer.statics.stiffness import largest_displacement_m_per_N
-from designer.workspace.demand import demand_of, in_worst_turn, is_left_out, size_worst
+from designer.workspace.demand import at_worst_orientation, demand_of, is_left_out, size_worst
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import WorkspaceMap, map_workspace
 
@@ -371,7 +370,7 @@ def _solve_worst_orientation(
     if space.orientations.count == 1:
         return statics
     demand = demand_of(_utilisation(statics, cable).max(axis=-1), statics, workspace.hangs_below)
-    return solve_sagging(robot, Poses.at(in_worst_turn(space, places, demand)), cable)
+    return solve_sagging(robot, Poses.at(at_worst_orientation(space, places, demand)), cable)
 
 
 def _utilisation(statics: Statics, cable: Cable | Cables | None) -> FloatArray:
@@ -509,7 +508,6 @@ class RopeRow:
 
     @property
     def rope(self) -> Rope:
-        """Its names, by which it is chosen."""
         return Rope(self.grade.id, self.size.id)
 
     @property
@@ -599,9 +597,9 @@ def _quick_row(candidate: Candidate, is_best: bool, is_in_front: bool) -> RopeRo
     elif (rejection := rejection_words(candidate)) is not None:
         standing, reason = "rejected", rejection
     elif is_in_front:
-        standing, reason = "undominated", "holds at the samples, and no other beats it there"
+        standing, reason = "undominated", "holds at the samples; no other rope dominates it there"
     else:
-        standing, reason = "dominated", "holds at the samples, and another one beats it there"
+        standing, reason = "dominated", "holds at the samples; another rope dominates it there"
     return _row(candidate, standing, reason)
 
 
@@ -648,7 +646,6 @@ def _answered(ropes: Ropes, analysis: Analysis) -> Ropes:
 
 
 def ropes_of(selection: SelectionResult, groups: GroupChoice | None = None) -> Ropes:
-    """Return the rows of a selection that was made in full."""
     chosen = selection.chosen
     rows = [_row(c, c.standing, c.reason) for c in selection.candidates]
     rows += [
@@ -675,7 +672,7 @@ class Pin:
 
     question: Question
     fields: tuple[Field, ...]
-    here: PoseAnswer | None = None
+    pose: PoseAnswer | None = None
     worst: WorstAnswer | None = None
     ropes: Ropes | None = None
 
@@ -719,10 +716,10 @@ class Differences:
 
 # Title, unit, what leads to it from SI, and the figure of a state; None where it is not known
 _FIGURES: tuple[tuple[str, str, float, Callable[[Pin], float | None]], ...] = (
-    ("Diameter needed here", "mm", 1e3, lambda p: p.here.diameter_m if p.here else None),
-    ("Largest tension here", "kN", 1e-3, lambda p: p.here.max_tension_N if p.here else None),
-    ("Utilisation here", "%", 100.0, lambda p: p.here.utilisation if p.here else None),
-    ("Stiffness here", "kN/m", 1e-3, lambda p: p.here.stiffness_N_per_m if p.here else None),
+    ("Diameter needed here", "mm", 1e3, lambda p: p.pose.diameter_m if p.pose else None),
+    ("Largest tension here", "kN", 1e-3, lambda p: p.pose.max_tension_N if p.pose else None),
+    ("Utilisation here", "%", 100.0, lambda p: p.pose.utilisation if p.pose else None),
+    ("Stiffness here", "kN/m", 1e-3, lambda p: p.pose.stiffness_N_per_m if p.pose else None),
     ("Diameter needed at worst", "mm", 1e3, lambda p: p.worst.diameter_m if p.worst else None),
     ("Utilisation at worst", "%", 100.0, lambda p: p.worst.utilisation if p.worst else None),
     (
@@ -760,7 +757,7 @@ def _changes(before: Pin, after: Pin) -> Iterator[Change]:
             yield Change(title, old.text if old else "", new.text if new else "")
     words = {
         "Rope": [_label(pin.question.rope) for pin in (before, after)],
-        "Verdict": [pin.here.sentence if pin.here else "" for pin in (before, after)],
+        "Verdict": [pin.pose.sentence if pin.pose else "" for pin in (before, after)],
         "Best rope": [_label(pin.best.rope if pin.best else None) for pin in (before, after)],
     }
     for title, (old_text, new_text) in words.items():

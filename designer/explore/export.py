@@ -24,9 +24,10 @@ from designer.explore.answers import (
 from designer.explore.question import Question
 from designer.explore.session import text_of
 from designer.io.output import file_names, output_folder, write_file
+from designer.plugins import require_ring
 from designer.progress import Reporter
 
-What = Literal[
+ExportContent = Literal[
     "report", "picture", "tables", "vtk", "lengths", "csv", "caspr", "moordyn", "mujoco", "gltf"
 ]
 """What can be exported; a picture is taken by the window itself, the last are formats of
@@ -83,7 +84,7 @@ def export(
     question: Question,
     reporter: Reporter,
     *,
-    content: What,
+    content: ExportContent,
     target: Path,
     ropes: Ropes | None = None,
     poses: Path | None = None,
@@ -123,17 +124,18 @@ def _lengths(question: Question, reporter: Reporter, target: Path, poses: Path |
         raise NothingToExportError("No rope serves this study, so there are no lengths")
     write_file(target, lengths.to_csv(table.names, table.values))
     left_out = (f"{poses}: column {name} holds texts: left out" for name in table.left_out)
-    said = (*left_out, *lengths.remarks(), *scope_of_lengths(study, in_motion=in_motion))
-    return Written((target,), said)
+    remarks = (*left_out, *lengths.remarks(), *scope_of_lengths(study, in_motion=in_motion))
+    return Written((target,), remarks)
 
 
 def _for_program(question: Question, reporter: Reporter, name: str, target: Path) -> Written:
     """Write the study for another program, as `designer export` does."""
+    require_ring("export")
     from designer.exports.formats import FORMATS, export_study
 
-    made = export_study(FORMATS[name], target, question.study, question.catalogue, reporter)
-    lost = tuple(f"Not in it: {line}" for line in made.lost)
-    return Written(tuple(target.parent / file for file in made.files), lost)
+    exported = export_study(FORMATS[name], target, question.study, question.catalogue, reporter)
+    lost = tuple(f"Not in it: {line}" for line in exported.lost)
+    return Written(tuple(target.parent / file for file in exported.files), lost)
 
 
 def _report(question: Question, reporter: Reporter, folder: Path) -> Written:
@@ -150,10 +152,8 @@ def _report(question: Question, reporter: Reporter, folder: Path) -> Written:
 
 
 def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Written:
-    pose = pose_answer(question)
-    tables = {
-        "cables.csv": _csv([f.name for f in fields(CableState)], map(asdict, pose.cables)),
-    }
+    cables = map(asdict, pose_answer(question).cables)
+    tables = {"cables.csv": _csv([f.name for f in fields(CableState)], cables)}
     chart = map_answer(question, fine=True, quantities=_ALL)
     if chart.grids:
         columns = map_columns(chart)
@@ -177,13 +177,14 @@ def map_columns(chart: MapAnswer) -> dict[str, Any]:
 
 
 def rope_table(ropes: Ropes) -> str:
-    return _csv([*_ROPE_COLUMNS, "x_m", "y_m", "z_m"], map(_rope, ropes.rows))
+    axes = ("x_m", "y_m", "z_m")
 
+    def figures(row: RopeRow) -> dict[str, Any]:
+        place = [None] * 3 if row.place is None else row.place[:3].tolist()
+        columns = {name: attrgetter(path)(row) for name, path in _ROPE_COLUMNS.items()}
+        return columns | dict(zip(axes, place, strict=True))
 
-def _rope(row: RopeRow) -> dict[str, Any]:
-    place = [None] * 3 if row.place is None else row.place[:3].tolist()
-    figures = {name: attrgetter(path)(row) for name, path in _ROPE_COLUMNS.items()}
-    return figures | dict(zip(("x_m", "y_m", "z_m"), place, strict=True))
+    return _csv([*_ROPE_COLUMNS, *axes], map(figures, ropes.rows))
 
 
 def _csv(names: Sequence[str], rows: Iterable[dict[str, Any]]) -> str:
@@ -233,9 +234,10 @@ def optimised_study(question: Question, reporter: Reporter, *, plan: Path) -> Op
 
     Raises InputError if the plan is faulty, or is of another study, or the study is not saved.
     """
+    require_ring("optimise")
     from designer.optimum.optimise import optimum_of
     from designer.optimum.plan import read_optimisation
-    from designer.report.optimum import headline, trust_lines, variable_rows
+    from designer.optimum.report import headline, trust_lines, variable_rows
 
     laid_out = read_optimisation(plan, question.plugins.with_others)
     _require_study_of(question, plan, laid_out.document.name)
@@ -258,9 +260,10 @@ def sweep_study(question: Question, reporter: Reporter, *, plan: Path, target: P
     Raises InputError if the plan is faulty, or is of another study, or the study is not saved; or
     if something else is at the target; OutputError if a file cannot be written.
     """
-    from designer.report.sweep import write_sweep
+    require_ring("sweep")
     from designer.sweeps import run as running
     from designer.sweeps.plan import read_sweep
+    from designer.sweeps.report import write_sweep
     from designer.sweeps.run import opened, read_store, report_folder
 
     laid_out = read_sweep(plan, question.plugins.with_others)

@@ -105,7 +105,8 @@ def _ends(
     at, kind, least = value or 0.0, reader.dimension, reader.at_least
     ends: tuple[float, float] | None = None
     if plain in _IN_WORLD:
-        axis = _axis(place)
+        last = place[-1]
+        axis = 2 if last == "floor" or "z" in place else int(place[-2] if "box" in place else last)
         ends = min(at, sizes.low_m[axis]), max(at, sizes.high_m[axis])
     elif kind is ANGLE:
         ends = at - _TURN_RAD, at + _TURN_RAD
@@ -137,12 +138,6 @@ def _lengths(
         middle = at or 0.01 * sizes.extent_m
         return middle / _FACTOR**2, middle * _FACTOR**2
     return 0.0, max(0.25 * sizes.extent_m, at)
-
-
-def _axis(place: Sequence[Key]) -> int:
-    if place[-1] == "floor" or "z" in place:
-        return 2
-    return int(place[-2] if "box" in place else place[-1])
 
 
 Kind = Literal["quantity", "count", "choice"]
@@ -197,7 +192,8 @@ class Field:
         """
         if self.kind == "count":
             return str(round(value_SI))
-        unit = _unit_of(self.text)
+        number = _NUMBER.match(self.text)
+        unit = "" if number is None else self.text[number.end() :].strip()
         zero_SI, per_unit = 0.0, 1.0
         if unit:
             zero_SI = read_quantity(f"0 {unit}", self.dimension)
@@ -206,8 +202,8 @@ class Field:
         span = abs(self.high - self.low) if self.high is not None and self.low is not None else 0.0
         size = abs(span / per_unit) if not self.is_log and span else abs(value)
         places = _ROUND - math.floor(math.log10(size)) if size > 0.0 else 0
-        number = f"{(value if exactly else round(value, places)) + 0.0:.12g}"
-        return f"{number} {unit}" if unit else number
+        text = f"{(value if exactly else round(value, places)) + 0.0:.12g}"
+        return f"{text} {unit}" if unit else text
 
 
 def keys_of(path: str) -> tuple[Key, ...]:
@@ -278,7 +274,6 @@ class _Slot:
 
     @property
     def plain(self) -> str:
-        """Path without places in lists."""
         return ".".join(key for key in self.place if isinstance(key, str))
 
     @property
@@ -369,18 +364,22 @@ def _field(slot: _Slot, sizes: Sizes) -> Field:
         )  # fmt: skip
     value = None if slot.value is None else float(slot.value)
     if isinstance(slot.reader, WholeNumber):
-        low, high = slot.reader.least, slot.reader.most
+        least, most = slot.reader.least, slot.reader.most
         text = given or ("" if value is None else str(slot.value))
         return Field(
             **common, unit="", kind="count", value_SI=value, text=text,
-            definition=f"{definition} A whole number from {low} to {high}.".strip(),
-            **count_slider(value, low, high, slot.plain),
+            definition=f"{definition} A whole number from {least} to {most}.".strip(),
+            **count_slider(value, least, most, slot.plain),
         )  # fmt: skip
     dimension = slot.reader.dimension
     text = given or ("" if value is None else format_SI(value, dimension))
+    low, high = slot.reader.at_least, slot.reader.at_most
+    limits = ""
+    if low is not None and high is not None:
+        limits = f"From {format_SI(low, dimension)} to {format_SI(high, dimension)}."
     return Field(
         **common, unit=dimension.unit, kind="quantity", value_SI=value, text=text,
-        definition=f"{definition} {_limits(slot.reader)}".strip(), dimension=dimension,
+        definition=f"{definition} {limits}".strip(), dimension=dimension,
         **slider(slot.plain, slot.place, value, slot.reader, sizes),
     )  # fmt: skip
 
@@ -402,20 +401,6 @@ def _label(title: str, place: Sequence[Key]) -> str:
     is_numbered = plain.endswith(("angles", "tension_max"))
     part = str(last + 1) if is_numbered else _AXES[last] if last < 3 else str(last)
     return f"{numbered}, {part}"
-
-
-def _limits(reader: QuantityField) -> str:
-    low, high = reader.at_least, reader.at_most
-    if low is None or high is None:
-        return ""
-    ends = (format_SI(end, reader.dimension) for end in (low, high))
-    return "From {} to {}.".format(*ends)
-
-
-def _unit_of(text: str) -> str:
-    """Return the unit of a quantity as it is written; nothing of a bare number."""
-    number = _NUMBER.match(text)
-    return "" if number is None else text[number.end() :].strip()
 
 
 def with_slider_of(field: Field, saved: Field | None) -> Field:

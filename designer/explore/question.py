@@ -17,7 +17,7 @@ from designer.arrays import FloatArray, frozen_array
 from designer.effects.design import AsBuilt
 from designer.errors import DesignerError, described
 from designer.grades.grade import Grade
-from designer.grades.registry import Catalogue, kept_catalogue
+from designer.grades.registry import Catalogue, cached_catalogue
 from designer.model.cable import Cable, Cables, Material
 from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Poses, Robot
@@ -26,13 +26,13 @@ from designer.plugins import Plugins
 from designer.progress import Advance
 from designer.selection.candidate import Candidate, candidates_of
 from designer.selection.cases import FEW_AT_FIRST, converge_stiffness
-from designer.selection.efficiency import Allowance
+from designer.selection.reeving import Allowance
 from designer.selection.select import at_samples
 from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Study, as_built_by, require_enough_cables
 from designer.workspace.section import section_of_pose
 
-Quick = Literal["here", "coarse", "fine", "ropes", "residuals", "worst", "requirements"]
+Quick = Literal["pose", "coarse", "fine", "ropes", "residuals", "worst", "requirements"]
 Long = Literal["select", "diagnose", "export", "optimise", "sweep"]
 Kind = Quick | Long
 Status = Literal["progress", "done", "failed", "cancelled"]
@@ -64,7 +64,6 @@ class RopePerCable:
 
 
 def cables_words(rope: Rope | RopePerCable | None) -> str:
-    """Return what figures are of, for the reader."""
     return "Thinnest cable of the family" if rope is None else rope.label
 
 
@@ -107,7 +106,6 @@ class Question:
 
     @cached_property
     def built(self) -> AsBuilt:
-        """Robot and cables as the declared effects have them."""
         require_enough_cables(self.study)
         has_region = self.workspace is not None
         return as_built_by(
@@ -126,7 +124,6 @@ class Question:
 
     @cached_property
     def catalogue(self) -> Catalogue:
-        """All grades that the study may name."""
         return catalogue_of(self.study, self.plugins)
 
     @cached_property
@@ -137,8 +134,10 @@ class Question:
         size, the sheave leaves nothing of its strength, or there are more or fewer ropes than
         cables.
         """
-        if self.rope is None or isinstance(self.rope, Rope):
-            return None if self.rope is None else self._with_converged_stiffness(self.rope)
+        if self.rope is None:
+            return None
+        if isinstance(self.rope, Rope):
+            return self._with_converged_stiffness(self.rope)
         cables = {rope: self._with_converged_stiffness(rope) for rope in self.rope.ropes}
         if len(self.rope.ropes) != self.robot.n_cables:
             raise DesignerError("the ropes of the groups are of a robot with other cables")
@@ -205,7 +204,7 @@ def catalogue_of(study: Study, plugins: Plugins) -> Catalogue:
 
     Raises InputError if a file that the study names is faulty, or there is no grade that it names.
     """
-    catalogue = kept_catalogue(study.catalogues, plugins)
+    catalogue = cached_catalogue(study.catalogues, plugins)
     catalogue.require_grades_of(study)
     return catalogue
 

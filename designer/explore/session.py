@@ -133,7 +133,6 @@ def with_entry(reading: Reading, text: str, field: Field, typed: str) -> str:
 
 
 def put_back(present: Reading, saved: Reading, path: str) -> str:
-    """Return the present text with one field as the file has it, or without it."""
     text = present.text
     keys, saved_keys = _keys_in_text(text, path), _keys_in_text(saved.text, path)
     saved_value = edits.value_text(saved.text, saved_keys)
@@ -244,7 +243,7 @@ class Session:
         self._fields: tuple[Reading, Reading, tuple[Field, ...]] | None = None
         place = initial_place(self._saved.study)
         self._steps = [_Step("", SessionState(self._saved, self._saved, place))]
-        self._at = 0  #: Which of these steps was the last one; those after it were undone
+        self._index = 0  #: Which of these steps was the last one; those after it were undone
 
     @classmethod
     def open(cls, path: Path, plugins: Plugins) -> Self:
@@ -261,7 +260,7 @@ class Session:
 
     @property
     def state(self) -> SessionState:
-        return self._steps[self._at].state
+        return self._steps[self._index].state
 
     @property
     def path(self) -> Path:
@@ -270,12 +269,10 @@ class Session:
 
     @property
     def text(self) -> str:
-        """The study as it would be saved."""
         return self.state.reading.text
 
     @property
     def saved_text(self) -> str:
-        """The study as it was read or saved last."""
         return self._saved.text
 
     @property
@@ -359,12 +356,11 @@ class Session:
         if reading.study is None:
             self.rejected[path] = Rejected(typed, reading.faults)
             return reading.faults
-        label = f"Change {_small(field.label)}"
+        label = f"Change {field.label[:1].lower()}{field.label[1:]}"
         self._take(label, path if continuous else None, reading, moves=path.startswith("pose."))
         return ()
 
     def put_back(self, path: str) -> tuple[Fault, ...]:
-        """Make one field as it is in the file; return what stands against it, nothing if done."""
         self.rejected.pop(path, None)
         field = self.state.live.by_path.get(path)
         if field is None:
@@ -373,7 +369,8 @@ class Session:
         if reading.study is None:
             self.rejected[path] = Rejected(field.text, reading.faults)
             return reading.faults
-        self._take(f"Put back {_small(field.label)}", None, reading, moves=path.startswith("pose."))
+        label = f"Put back {field.label[:1].lower()}{field.label[1:]}"
+        self._take(label, None, reading, moves=path.startswith("pose."))
         return ()
 
     def set_text(self, text: str, *, continuous: bool = False) -> tuple[Fault, ...]:
@@ -442,7 +439,7 @@ class Session:
 
     def begin_with(self, rope: Rope | RopePerCable | None) -> None:
         """Look at a rope that nobody chose; nothing that could be undone."""
-        self._steps[self._at].state = replace(self.state, rope=rope)
+        self._steps[self._index].state = replace(self.state, rope=rope)
 
     def set_pin(self, pin: object) -> None:
         """Compare with a state from now on; with nothing for None."""
@@ -451,7 +448,7 @@ class Session:
 
     def settle(self) -> None:
         """End what was going on: the next continuous change is a step of its own."""
-        self._steps[self._at].key = None
+        self._steps[self._index].key = None
 
     def _take(
         self,
@@ -468,13 +465,13 @@ class Session:
             changes |= {"reading": reading, "live": live}
             if moves and reading.study is not None:
                 changes["place"] = initial_place(reading.study)
-        state, last = replace(self.state, **changes), self._steps[self._at]
-        del self._steps[self._at + 1 :]
+        state, last = replace(self.state, **changes), self._steps[self._index]
+        del self._steps[self._index + 1 :]
         if key is not None and last.key == key:
             last.state = state
         else:
             self._steps = [*self._steps, _Step(label, state, key)][-MAX_STEPS:]
-            self._at = len(self._steps) - 1
+            self._index = len(self._steps) - 1
 
     def _with_entries(self, entries: dict[str, str]) -> Reading:
         """Return what the last sound text is with entries in it, by path."""
@@ -489,23 +486,22 @@ class Session:
 
     @property
     def undo_label(self) -> str:
-        return self._steps[self._at].label if self._at else ""
+        return self._steps[self._index].label if self._index else ""
 
     @property
     def redo_label(self) -> str:
-        return "".join(step.label for step in self._steps[self._at + 1 :][:1])
+        return "".join(step.label for step in self._steps[self._index + 1 :][:1])
 
     def undo(self) -> None:
-        self._go_to(max(self._at - 1, 0))
+        self._go_to(max(self._index - 1, 0))
 
     def redo(self) -> None:
-        """Do the step again that was undone last, if there is one."""
-        self._go_to(min(self._at + 1, len(self._steps) - 1))
+        self._go_to(min(self._index + 1, len(self._steps) - 1))
 
     def _go_to(self, step: int) -> None:
         self.rejected.clear()
         self.settle()
-        self._at = step
+        self._index = step
         self.settle()
         self._stay_here()
 
@@ -517,7 +513,7 @@ class Session:
             live = reading
             if reading.study is None:
                 live = self._context.read(state.live.moved_to(self.path.parent))
-            self._steps[self._at].state = replace(state, reading=reading, live=live)
+            self._steps[self._index].state = replace(state, reading=reading, live=live)
 
     # Files
 
@@ -563,7 +559,3 @@ class Session:
         self.file, self._context = path, replace(self._context, path=path)
         self._stay_here()
         self._saved = self.state.reading
-
-
-def _small(label: str) -> str:
-    return label[:1].lower() + label[1:]

@@ -6,17 +6,18 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from designer.errors import DesignerError, InputError, NothingToExportError
+from designer.api import AnyStudy, as_study
+from designer.errors import DesignerError, InputError, NothingToExportError, WrongValueError
 from designer.exports.caspr import to_caspr
 from designer.exports.gltf import to_gltf
 from designer.exports.moordyn import to_moordyn
 from designer.exports.mujoco import to_mujoco
 from designer.exports.robot import Export, ExportedRobot
 from designer.exports.workshop import to_csv
-from designer.grades.registry import Catalogue
+from designer.grades.registry import Catalogue, load_catalogue
 from designer.io.output import output_folder, require_file
 from designer.plugins import Plugins, named, registered
-from designer.progress import Reporter
+from designer.progress import SILENT, Reporter
 from designer.study import Study
 
 
@@ -61,10 +62,8 @@ FORMATS = {
 
 def load_formats(plugins: Plugins) -> tuple[dict[str, Format], list[str]]:
     """Return our own formats and those of plugins, and a line for each that is left out."""
-    formats, problems = registered(
-        plugins, "register_exporters", Format, lambda form: form.name, FORMATS
-    )
-    return FORMATS | {name: _guarded(*item) for name, item in formats.items()}, problems
+    formats, problems = registered(plugins, "register_exporters", Format, lambda form: form.name)
+    return {name: _guarded(*item) for name, item in formats.items()}, problems
 
 
 def _guarded(form: Format, label: str) -> Format:
@@ -106,3 +105,28 @@ def export_study(
         for file, content in made.files.items():
             (building / file).write_bytes(content)
     return made
+
+
+def export(study: AnyStudy, to: str, path: Path | str) -> tuple[str, ...]:
+    """Write the study for another program; returns what that cannot take, a line each.
+
+    ``to`` is ``caspr``, ``moordyn``, ``mujoco``, ``gltf`` or ``csv``. As `designer export` does.
+
+    Raises
+    ------
+    InputError
+        If there is no such format, the name of the file has another ending than it, or nothing
+        serves the study.
+    OutputError
+        If it cannot be written.
+    """
+    if to not in FORMATS:
+        raise WrongValueError("export", "to", f"to is {to!r}", ", ".join(FORMATS))
+    kind, target, study = FORMATS[to], Path(path), as_study(study)
+    if not target.name.endswith(kind.ending):
+        raise WrongValueError("export", "path", f"path is {target.name!r}", f"…{kind.ending}")
+    try:
+        made = export_study(kind, target, study, load_catalogue(), SILENT)
+    except NothingToExportError as reason:
+        raise InputError.at(study.source.path, str(reason)) from None
+    return tuple(made.lost)

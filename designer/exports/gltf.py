@@ -16,8 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from designer import __version__
-from designer.analysis.field import RegionField, cable_curves_m
-from designer.analysis.maps import WorkspaceMaps, rope_maps, workspace_maps
+from designer.analysis.maps import (
+    RegionField,
+    WorkspaceMaps,
+    cable_curves_m,
+    rope_maps,
+    workspace_maps,
+)
 from designer.arrays import FloatArray
 from designer.exports.robot import Export, ExportedRobot, lost_by_all
 from designer.report.figures import overlay, palette

@@ -19,7 +19,7 @@ from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
 from designer.model.winches import Winches
 from designer.progress import SILENT, Reporter
-from designer.selection.qualities import DesignCable
+from designer.selection.assignment import DesignCable
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Study, as_built_by, declared_settings
 

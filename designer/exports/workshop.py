@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from designer.analysis.fabrication import FabricatedCable, fabricated_cables
+from designer.analysis.lengths import FabricatedCable, fabricated_cables
 from designer.documents.plain import csv_text
 from designer.exports.robot import Export, ExportedRobot
 from designer.model.winches import DEAD_TURNS

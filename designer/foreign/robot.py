@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 from designer.documents.xml import Element
 
@@ -113,4 +112,6 @@ class Importer:
     """What reads a kind of file; `designer.errors.InputError` from it is shown as it stands."""
 
     ending: str  #: of the files' names, such as ``.points``
-    read: Callable[[Path], ForeignRobot]
+    read: Callable[..., ForeignRobot]  #: from the path; and, of a model in parts, from two more
+    #: Whether it also takes the path of the other file, and which set of cables; None for usual.
+    has_parts: bool = False

@@ -18,9 +18,8 @@ from designer.plugins import Plugins, named, registered
 from designer.units import DENSITY, FORCE, MASS, STRESS, format_SI
 
 FILL_IN = "fill in"
-OWN_ENDINGS = (".xml", ".wcrfx")
 Importers = Mapping[str, tuple[Importer, str]]
-"""Those of plugins, by the ending of their files, each with its plugin's label."""
+"""By the ending of their files, each with its plugin's label; empty for our own."""
 _DOWN = (0.0, 0.0, -1.0)
 _FIGURES = "density, youngs_modulus and allowable_stress"
 
@@ -266,10 +265,8 @@ def _list(values: tuple[float, ...]) -> str:
 
 
 def load_importers(plugins: Plugins) -> tuple[Importers, list[str]]:
-    """Return the importers of plugins for `read_foreign`, and a line for each that is left out."""
-    return registered(
-        plugins, "register_importers", Importer, lambda importer: importer.ending, OWN_ENDINGS
-    )
+    """Return all importers for `read_foreign`, and a line for each that is left out."""
+    return registered(plugins, "register_importers", Importer, lambda importer: importer.ending)
 
 
 def read_foreign(
@@ -283,13 +280,13 @@ def read_foreign(
     Parameters
     ----------
     path : Path
-        The file.
+        The file; one whose name ends as no importer's is read as one of ours.
     other : Path or None
         The other file of a CASPR model; None for the one beside it.
     cable_set : str or None
         Which set of cables of a CASPR model; None for the file's default.
     importers : mapping of str to tuple
-        Those of plugins; see `load_importers`.
+        See `load_importers`.
 
     Raises
     ------
@@ -298,17 +295,35 @@ def read_foreign(
     PluginError
         If a plugin fails.
     """
-    for ending, (importer, label) in importers.items():
-        if path.name.endswith(ending):
-            with named(label, f"fails in reading {path}", DesignerError):
-                robot = importer.read(path)
-                if not isinstance(robot, ForeignRobot):
-                    raise TypeError(f"it returned {type(robot).__name__}, not a ForeignRobot")
-            return robot.as_point_mass()
+    endings = sorted((ending for ending in importers if path.name.endswith(ending)), key=len)
+    importer, label = importers[endings[-1]] if endings else (IMPORTERS[0], "")
+    parts = (other, cable_set)
+    if not importer.has_parts:
+        _refuse_parts(path, *parts)
+    with named(label, f"fails in reading {path}", DesignerError):
+        robot = importer.read(path, *parts) if importer.has_parts else importer.read(path)
+        if not isinstance(robot, ForeignRobot):
+            raise TypeError(f"it returned {type(robot).__name__}, not a ForeignRobot")
+    return robot.as_point_mass()
+
+
+def _read_model(path: Path, other: Path | None, cable_set: str | None) -> ForeignRobot:
+    """Return the robot of a file in XML, told by its outermost element."""
     root = read_xml(path)
     if root.tag in caspr.ROOTS:
-        return caspr.read_caspr(path, root, other, cable_set).as_point_mass()
+        return caspr.read_caspr(path, root, other, cable_set)
     if root.tag != wirex.ROOT:
         roots = f"<{'>, <'.join(caspr.ROOTS)}> of CASPR or <{wirex.ROOT}> of WireX"
         root.refuse(f"the file holds <{root.tag}>", roots)
-    return wirex.read_wirex(path, root).as_point_mass()
+    _refuse_parts(path, other, cable_set)
+    return wirex.read_wirex(path, root)
+
+
+def _refuse_parts(path: Path, *parts: object) -> None:
+    if any(parts):
+        expected = "no --cables, --bodies or --cable-set"
+        raise InputError.at(path, "is no model of CASPR", expected)
+
+
+IMPORTERS = [Importer(ending, _read_model, has_parts=True) for ending in (".xml", ".wcrfx")]
+"""Our own."""

@@ -31,19 +31,19 @@ def _grades() -> tuple[Path | Grade, ...]:
     from designer.grades.standard_rope import standard_ropes
 
     folder = data_folder("catalog")
-    kept = _kept_file(folder)
-    grades = _read(kept)
+    file = _cache_file(folder)
+    grades = _read_cache(file)
     if grades is None:
         files, faults = read_grades(folder)
         if faults:
             return (folder, *standard_ropes())
-        grades = tuple(file.grade for file in files)
-        _keep(kept, grades)
+        grades = tuple(grade_file.grade for grade_file in files)
+        _write_cache(file, grades)
     return (*grades, *standard_ropes())
 
 
-def _kept_file(folder: Path) -> Path:
-    """Return where grades are kept as they were read, since to check them takes a second.
+def _cache_file(folder: Path) -> Path:
+    """Return where grades are cached as they were read, since to check them takes a second.
 
     Its name is a digest of the grade files and of all that reads them.
     """
@@ -58,21 +58,21 @@ def _kept_file(folder: Path) -> Path:
     return cache_folder / f"grades-{digest.hexdigest()[:32]}"
 
 
-def _read(kept: Path) -> tuple[Grade, ...] | None:
-    """Return what is kept; None where nothing is, or it is damaged."""
+def _read_cache(file: Path) -> tuple[Grade, ...] | None:
+    """Return what is cached; None where nothing is, or it is damaged."""
     with suppress(OSError):
-        digest, data = kept.read_bytes()[:32], kept.read_bytes()[32:]
+        digest, data = file.read_bytes()[:32], file.read_bytes()[32:]
         if sha256(data).digest() == digest:
             grades: tuple[Grade, ...] = pickle.loads(data)
             return grades
     return None
 
 
-def _keep(kept: Path, grades: tuple[Grade, ...]) -> None:
-    """Keep the grades, if the disk takes them; the file appears whole."""
+def _write_cache(file: Path, grades: tuple[Grade, ...]) -> None:
+    """Write the grades, if the disk takes them; the file appears whole."""
     data = pickle.dumps(grades)
-    trial = kept.with_suffix(f".{os.getpid()}")
+    trial = file.with_suffix(f".{os.getpid()}")
     with suppress(OSError):
-        kept.parent.mkdir(parents=True, exist_ok=True)
+        file.parent.mkdir(parents=True, exist_ok=True)
         trial.write_bytes(sha256(data).digest() + data)
-        trial.replace(kept)
+        trial.replace(file)

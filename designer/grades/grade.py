@@ -302,7 +302,7 @@ RopeMaterial = Literal[
     "other",
 ]
 
-MOST_SIZES = 500
+MAX_SIZES = 500
 _STRAND = re.compile(r"\b1\s*[x×]\s*\d|spiral|locked|\brod\b|\bsolid\b", re.IGNORECASE)
 _NO_MAKER = re.compile(r"(not|none|unknown|generic|various|standard \()\b", re.IGNORECASE)
 NOT_NAMED = "not in selection.grades"
@@ -450,7 +450,7 @@ class GradeSheet(FileValue):
     units: Units | None = None
     sizes: Annotated[
         tuple[Size, ...],
-        list_of(1, MOST_SIZES, f"1 to {MOST_SIZES} sizes"),
+        list_of(1, MAX_SIZES, f"1 to {MAX_SIZES} sizes"),
         Field(description="a list of sizes"),
     ]
     format: Annotated[int, FormatOf(GRADE_FORMAT)] = 1

@@ -20,7 +20,7 @@ _BETWEEN = 0.03
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class GradeFilter:
     """What grades to list; each None wants all. Capitals do not matter."""
 
     construction: str | None = None  #: such as ``7x19`` or ``braid``; blanks do not matter
@@ -186,7 +186,7 @@ def _figures(grade: Grade) -> Iterator[tuple[str, str]]:
 def _in_service(grade: Grade) -> Iterator[tuple[str, str]]:
     """What is known of the rope at work, and one row that names what is not."""
     limits, range_C = grade.limits, grade.limits and grade.limits.temperature_C
-    known = {
+    texts = {
         "rotation": grade.rotation and str(grade.rotation),
         "permanent stretch": grade.permanent_stretch and str(grade.permanent_stretch),
         "discard": grade.discard and str(grade.discard),
@@ -195,9 +195,9 @@ def _in_service(grade: Grade) -> Iterator[tuple[str, str]]:
         and f"{range_C[0]:g} to {range_C[1]:g} °C, {limits.source}",
         "creep": limits and limits.creep and f"{limits.creep}, {limits.source}",
     }
-    yield from ((name, text) for name, text in known.items() if text)
+    yield from ((name, text) for name, text in texts.items() if text)
     can_creep = grade.material_class == "fibre"
-    missing = [name for name, text in known.items() if not text and (can_creep or name != "creep")]
+    missing = [name for name, text in texts.items() if not text and (can_creep or name != "creep")]
     if missing:
         yield "not given", ", ".join(missing)
 

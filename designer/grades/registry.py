@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import partial
 from hashlib import sha256
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from designer.study import Study
 
 
-MOST_FILES = 1000
-MOST_ENTRIES = 20_000
+MAX_FILES = 1000
+MAX_ENTRIES = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,18 +77,13 @@ def _with_units(value: Any) -> Any:
         units = asdict(reader_of(Units).validate_python(value.get("units")))
     except ValidationError:  # is reported once, not in every row
         return value
-    return {**value, "sizes": [_with_unit(row, units) for row in value["sizes"]]}
-
-
-def _with_unit(row: Any, units: Mapping[str, str | None]) -> Any:
-    if not isinstance(row, dict):
-        return row
-    row = dict(row)
-    for name, value in row.items():
-        number = split_quantity(value)
-        if number is not None and units.get(name) and not number[1]:
-            row[name] = f"{value} {units[name]}"
-    return row
+    rows = [dict(row) if isinstance(row, dict) else row for row in value["sizes"]]
+    for row in (row for row in rows if isinstance(row, dict)):
+        for name, cell in row.items():
+            number = split_quantity(cell)
+            if number is not None and units.get(name) and not number[1]:
+                row[name] = f"{cell} {units[name]}"
+    return {**value, "sizes": rows}
 
 
 def read_grades(path: Path, needs_any: bool = False) -> tuple[list[GradeFile], list[Fault]]:
@@ -138,10 +133,10 @@ def grade_files(path: Path) -> list[Path]:
     """
     if not path.is_dir():
         return [path]  # whether it is readable is found out by reading it
-    entries = list(islice(_entries(path), MOST_ENTRIES + 1))
+    entries = list(islice(_entries(path), MAX_ENTRIES + 1))
     files = [entry for entry in entries if _is_grade_file(entry)]
-    if len(entries) > MOST_ENTRIES or len(files) > MOST_FILES:
-        expected = f"at most {MOST_FILES} grade files, and {MOST_ENTRIES} files in all"
+    if len(entries) > MAX_ENTRIES or len(files) > MAX_FILES:
+        expected = f"at most {MAX_FILES} grade files, and {MAX_ENTRIES} files in all"
         raise InputError.at(path, "the folder holds too many files", expected)
     return sorted(files)
 
@@ -167,8 +162,8 @@ def _is_grade_file(path: Path) -> bool:
         return True
 
 
-MOST_PROBLEMS_OF_A_SOURCE = 20
-_MOST_NAMED = 12
+MAX_PROBLEMS_OF_A_SOURCE = 20
+_MAX_NAMED = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -276,9 +271,9 @@ class Catalogue(checked.Shown):
         if not names:
             nearest = difflib.get_close_matches(text, [grade.id for grade in self.grades], n=3)
             return " or ".join(repr(name) for name in nearest)
-        more = len(names) - _MOST_NAMED
+        more = len(names) - _MAX_NAMED
         rest = f" or one of {more} more that `designer catalog list` shows" if more > 0 else ""
-        return "such as " + ", ".join(names[:_MOST_NAMED]) + rest
+        return "such as " + ", ".join(names[:_MAX_NAMED]) + rest
 
 
 def _letters(text: str) -> str:
@@ -311,7 +306,7 @@ def load_catalogue(
     if plugins is None:
         plugins = find_plugins(with_plugins)
     offers, failures = call_hook(plugins, "register_grades")
-    shelf = _Shelf(problems=[*plugins.problems, *failures])
+    shelf = _CatalogueBuilder(problems=[*plugins.problems, *failures])
     for offer in offers:
         shelf.add_offer(offer)
     user_folder = user_catalogue_folder()
@@ -327,10 +322,10 @@ def load_catalogue(
     )
 
 
-_kept: list[tuple[Plugins, object, Catalogue]] = []
+_cached: list[tuple[Plugins, object, Catalogue]] = []
 
 
-def kept_catalogue(paths: Sequence[Path], plugins: Plugins) -> Catalogue:
+def cached_catalogue(paths: Sequence[Path], plugins: Plugins) -> Catalogue:
     """Return what `load_catalogue` does, read anew only for other plugins or changed files.
 
     Checking every grade takes longer than most studies.
@@ -341,9 +336,9 @@ def kept_catalogue(paths: Sequence[Path], plugins: Plugins) -> Catalogue:
         If a file in ``paths`` is faulty, or has the id of another grade.
     """
     state = tuple((path, _changed_at(path)) for path in (*paths, user_catalogue_folder()))
-    if not (_kept and _kept[0][0] is plugins and _kept[0][1] == state):
-        _kept[:] = [(plugins, state, load_catalogue(paths, plugins=plugins))]
-    return _kept[0][2]
+    if not (_cached and _cached[0][0] is plugins and _cached[0][1] == state):
+        _cached[:] = [(plugins, state, load_catalogue(paths, plugins=plugins))]
+    return _cached[0][2]
 
 
 def _changed_at(path: Path) -> tuple[float, ...]:
@@ -363,7 +358,7 @@ def user_catalogue_folder() -> Path:
 
 
 @dataclass(slots=True)
-class _Shelf:
+class _CatalogueBuilder:
     """The catalogue while it is being filled."""
 
     problems: list[str]
@@ -378,8 +373,8 @@ class _Shelf:
             for grade in _grades_in(item, complaints.append, offer.name in OWN_NAMES):
                 complaints += self._add(replace(grade, origin=offer.name))
         lines = [f"{offer.label}: {one_line(complaint)}: left out" for complaint in complaints]
-        self.problems += lines[:MOST_PROBLEMS_OF_A_SOURCE]
-        hidden = len(lines) - MOST_PROBLEMS_OF_A_SOURCE
+        self.problems += lines[:MAX_PROBLEMS_OF_A_SOURCE]
+        hidden = len(lines) - MAX_PROBLEMS_OF_A_SOURCE
         if hidden > 0:
             self.problems.append(f"{offer.label}: {hidden} more problems of this kind")
         added = list(self.grades.values())[before:]
@@ -394,7 +389,7 @@ class _Shelf:
             for file in files:
                 problems = self._add(replace(file.grade, origin=path.name))
                 faults += [id_fault(file, problem) for problem in problems]
-            digest = _digest([one.grade for one in files])
+            digest = _digest([file.grade for file in files])
             self.sources.append(CatalogueSource(path.name, str(path), len(files), digest))
         if faults:
             raise InputError(faults)

@@ -222,6 +222,8 @@ def standard_rope(
         raise ValueError("diameters have to ascend from above zero")
     construction, core = factors.construction, factors.core
     name = construction.replace(" ", "").lower()
+    has_six_strands = construction.startswith("6x")
+    usual_modulus = _FIBRE_CORE if core == "FC" and has_six_strands else _ANY_ROPE
     return Grade(
         id=f"en12385-{name}-{core.lower()}-{wire_grade_MPa}",
         manufacturer="none (EN 12385-4)",
@@ -232,7 +234,7 @@ def standard_rope(
         sizes=tuple(factors.size(diameter_m, wire_grade_MPa) for diameter_m in diameters_m),
         source=_SOURCE,
         trust="B",
-        modulus=_modulus(factors),
+        modulus=_MODULI.get((construction, core), usual_modulus),
         material="steel",
         standard="EN 12385-4",
         wire_grade=f"{wire_grade_MPa} N/mm2",
@@ -275,11 +277,3 @@ def _discard(construction: str) -> Remark | None:
     duty = "" if construction in _ROTATION else ", regular lay, M1 to M4 or class unknown"
     text = f"{short} visible broken wires over 6 d or {long} over 30 d, on steel sheaves and "
     return Remark(f"{text}single-layer drums{duty}", _BREAKS_SOURCE)
-
-
-def _modulus(factors: Factors) -> Modulus:
-    interval = _MODULI.get((factors.construction, factors.core))
-    if interval is not None:
-        return interval
-    has_six_strands = factors.construction.startswith("6x")
-    return _FIBRE_CORE if factors.core == "FC" and has_six_strands else _ANY_ROPE

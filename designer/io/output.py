@@ -7,7 +7,7 @@ import os
 import secrets
 import shutil
 import time
-from collections.abc import Collection, Container, Iterator
+from collections.abc import Callable, Collection, Container, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
@@ -67,7 +67,11 @@ def explained(folder: Path, only: Container[int | None] | None = None) -> Iterat
     except OSError as error:
         if only is not None and error.errno not in only:
             raise
-        raise OutputError(_not_writable(folder, error)) from error
+        file = next(filter(os.path.isfile, folder.parents), None)  # pathlib's fails at a long name
+        reason = f"{file} is a file" if file else error.strerror
+        if isinstance(error, FileExistsError) and folder.is_symlink():
+            reason = "it is a link that leads nowhere"
+        raise OutputError(f"{folder}: cannot be written ({reason})") from error
 
 
 def _begin(folder: Path, undo: Undo) -> Path:
@@ -79,7 +83,7 @@ def _begin(folder: Path, undo: Undo) -> Path:
     for missing in reversed(
         [parent for parent in (folder, *folder.parents) if not parent.exists()]
     ):
-        undo.add(partial(_remove_empty, missing))
+        undo.add(partial(_attempt, missing.rmdir))  # somebody may have put something in
     folder.mkdir(parents=True, exist_ok=True)
     clear_left_overs(folder)
     # Inside it, so that a folder which cannot be written shows before the work and not after, and
@@ -136,26 +140,13 @@ def _move(building: Path, folder: Path, outdated: Collection[str], back: Undo) -
 
 
 def _move_one(source: Path, target: Path, back: Undo) -> None:
-    back.add(partial(_put_back, target, source))
+    back.add(partial(_attempt, target.replace, source))  # which may not be moved yet
     source.replace(target)
 
 
-def _put_back(source: Path, target: Path) -> None:
-    with suppress(OSError):  # was not moved yet
-        source.replace(target)
-
-
-def _remove_empty(folder: Path) -> None:
-    with suppress(OSError):  # somebody has put something in
-        folder.rmdir()
-
-
-def _not_writable(path: Path, error: OSError) -> str:
-    file = next(filter(os.path.isfile, path.parents), None)  # pathlib's fails at a long name
-    reason = f"{file} is a file" if file else error.strerror
-    if isinstance(error, FileExistsError) and path.is_symlink():
-        reason = "it is a link that leads nowhere"
-    return f"{path}: cannot be written ({reason})"
+def _attempt(action: Callable[..., object], *values: Path) -> None:
+    with suppress(OSError):
+        action(*values)
 
 
 def file_names(folder: Path) -> list[str]:
@@ -190,15 +181,15 @@ def require_file(path: Path) -> None:
         unfinished.unlink()
 
 
-def kept_path(*names: str) -> Path:
-    """Return where something is kept for other runs: in the user's folder for such."""
+def cache_path(*names: str) -> Path:
+    """Return where a file is for other runs: in the user's folder for such."""
     from platformdirs import user_cache_path
 
     return user_cache_path("cdpr-designer", appauthor=False).joinpath(*names)
 
 
-def keep(path: Path, content: bytes) -> None:
-    """Keep a file for other runs, if the disk takes it."""
+def write_cache(path: Path, content: bytes) -> None:
+    """Write a file for other runs, if the disk takes it."""
     with suppress(OSError, OutputError):
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, content)

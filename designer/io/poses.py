@@ -32,7 +32,7 @@ _SHORTEST_M = 1e-3
 _LOAD_CASE = "load_case"
 TIME = "time_s"
 _LATEST_S = 1e7
-MOST_PATH_ROWS = 5000
+MAX_PATH_ROWS = 5000
 """Of a path: each takes poses of its own."""
 ErrorOf = Callable[[str, str], InputError]
 _OF_OPTION: ErrorOf = partial(InputError.at, "--poses")
@@ -202,9 +202,9 @@ def path_faults(table: PoseTable, *, has_limits: bool) -> Iterator[Fault]:
     for name in ("time", "t", "t_s"):
         if name in table.names and TIME not in table.names:
             yield log.fault(None, name, "is no name of a column of a path", TIME)
-    if not 2 <= len(table.places) <= MOST_PATH_ROWS:
+    if not 2 <= len(table.places) <= MAX_PATH_ROWS:
         problem = f"{len(table.places)} {'row' if len(table.places) == 1 else 'rows'}"
-        yield log.fault(None, "", problem, f"2 to {MOST_PATH_ROWS} rows of a path")
+        yield log.fault(None, "", problem, f"2 to {MAX_PATH_ROWS} rows of a path")
         return
     if TIME in table.left_out:
         yield log.fault(None, TIME, "holds texts", "a number in each row")

@@ -23,8 +23,8 @@ _TEXTS = ("grade", "price_per_m", "currency", "date")
 _DIAMETER = re.compile(r"diameter_(\w+)")
 _CURRENCY = re.compile(r"[A-Z]{3}")
 _DATE = re.compile(r"\d{4}(-\d\d){0,2}")
-_MOST_OFFERS = 20_000
-_MOST_FAULTS = 20
+_MAX_OFFERS = 20_000
+_MAX_FAULTS = 20
 ErrorOf = Callable[[str, str], InputError]
 
 
@@ -48,24 +48,24 @@ def read_prices(path: Path, error_of: ErrorOf) -> tuple[PriceList, str]:
         raise error_of(problem, expected) from None
     with file:
         rows, digest = cells_of(file, str(path))
-        (head_line, head), *below = [*islice(rows, _MOST_OFFERS + 2)] or [(1, [])]
+        (head_line, head), *below = [*islice(rows, _MAX_OFFERS + 2)] or [(1, [])]
     names = [cell.strip().casefold() for cell in head]
     faults = [Fault(str(path), head_line, *flaw) for flaw in _head_flaws(names)]
     if not below:
         faults.append(Fault(str(path), None, "", "there is no price", "a row for each size"))
-    if len(below) > _MOST_OFFERS:
-        expected = f"at most {_MOST_OFFERS}"
+    if len(below) > _MAX_OFFERS:
+        expected = f"at most {_MAX_OFFERS}"
         faults.append(Fault(str(path), None, "", "there are too many rows", expected))
     if not faults:
         reading = _Reading(str(path), names)
         offers = [reading.offer(line, cells) for line, cells in below]
         faults = reading.faults
     if faults:
-        more = len(faults) - _MOST_FAULTS
+        more = len(faults) - _MAX_FAULTS
         rest = [Fault(str(path), None, "", f"and {more} more of this kind")] if more > 0 else []
-        raise InputError([*faults[:_MOST_FAULTS], *rest])
-    found = tuple(offer for offer in offers if offer is not None)
-    return PriceList(path, reading.currency, found), digest()
+        raise InputError([*faults[:_MAX_FAULTS], *rest])
+    priced = tuple(offer for offer in offers if offer is not None)
+    return PriceList(path, reading.currency, priced), digest()
 
 
 def _head_flaws(names: list[str]) -> Iterator[tuple[str, str, str]]:
@@ -133,7 +133,14 @@ class _Reading:
         for name, text in texts.items():
             if not text:
                 raise _FlawError(name, "holds nothing", "a value in each row")
-        self._require_currency(line, texts["currency"])
+        currency = texts["currency"]
+        if not _CURRENCY.fullmatch(currency):
+            raise _FlawError("currency", f"holds {currency!r}", "three capitals such as EUR")
+        if not self.currency:
+            self.currency, self.currency_line = currency, line
+        if currency != self.currency:
+            expected = f"{self.currency} as in line {self.currency_line}, since rates change"
+            raise _FlawError("currency", f"holds {currency!r}", expected)
         date_text = texts["date"].removesuffix("T00:00:00")  # as a sheet of Excel has dates
         if not _is_date(date_text):
             expected = "a date such as 2026-03-31, 2026-03 or 2026"
@@ -145,15 +152,6 @@ class _Reading:
                 diameter_m = scale * _number(name, text, BOUNDS["rope diameter"], scale)
         price = _number("price_per_m", texts["price_per_m"], BOUNDS["price"])
         return Offer(texts["grade"], size_id, diameter_m, price, date_text, line)
-
-    def _require_currency(self, line: int, currency: str) -> None:
-        if not _CURRENCY.fullmatch(currency):
-            raise _FlawError("currency", f"holds {currency!r}", "three capitals such as EUR")
-        if not self.currency:
-            self.currency, self.currency_line = currency, line
-        if currency != self.currency:
-            expected = f"{self.currency} as in line {self.currency_line}, since rates change"
-            raise _FlawError("currency", f"holds {currency!r}", expected)
 
 
 def _is_date(text: str) -> bool:

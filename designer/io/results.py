@@ -13,7 +13,7 @@ import numpy as np
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.reactions import reactions_csv
-from designer.analysis.selection_json import candidates_csv
+from designer.analysis.result_json import candidates_csv
 from designer.diagnosis.design import declared_by, declared_of_session, spreads_of
 from designer.diagnosis.result import Diagnosis, effects_table
 from designer.documents import document
@@ -140,9 +140,9 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None
         files = [scalar(path_from(folder, path)) for path in measured.files]
         places["file",] = files[0] if len(files) == 1 else f"[{', '.join(files)}]"
     for number in range(len(measured.sessions)):
-        own = effects_table(declared_of_session(diagnosis, number + 1))
-        if own:
-            places["sessions", number, "effects"] = json.dumps(own)
+        declared = effects_table(declared_of_session(diagnosis, number + 1))
+        if declared:
+            places["sessions", number, "effects"] = json.dumps(declared)
     if noise := _estimated_noise(diagnosis):
         places |= {("noise", kind): str(size) for kind, size in noise.items()}
         places["noise", "estimated"] = f"[{', '.join(noise)}]"
@@ -159,15 +159,12 @@ def _origin(diagnosis: Diagnosis) -> str:
     """Return where the effects come from, for whoever reads the config later."""
     measured = diagnosis.study.measurements
     assert measured is not None
-    lines = [f"From the diagnosis of {measured.file_names}, SHA-256 {_digests(diagnosis)}"]
+    digests = ", ".join(digest[:16] for digest in diagnosis.measured.sha256.split(", "))
+    lines = [f"From the diagnosis of {measured.file_names}, SHA-256 {digests}"]
     for kind, *errors in diagnosis.errors:
         was, now = (kind.scale * error.heldout.value for error in errors)
         lines.append(f"{kind.name} error on unseen rows {was:.3g} -> {now:.3g} {kind.unit}")
     return "; ".join(lines)
-
-
-def _digests(diagnosis: Diagnosis) -> str:
-    return ", ".join(digest[:16] for digest in diagnosis.measured.sha256.split(", "))
 
 
 def _estimated_noise(diagnosis: Diagnosis) -> dict[str, float]:

@@ -122,7 +122,7 @@ class Cable:
     @property
     def attached_density_kg_per_m(self) -> float | FloatArray:
         """Mass per unstrained length of what is attached, of each cable where it differs [kg/m]."""
-        return _alike_or_each([each.linear_density_kg_per_m for each in self.attached])
+        return _alike_or_each([line.linear_density_kg_per_m for line in self.attached])
 
     @property
     def rope_density_kg_per_m(self) -> float:
@@ -134,7 +134,7 @@ class Cable:
 
         A film makes each of them, where there is one, so much thicker.
         """
-        films = [each.diameter_m + film_m * (each.diameter_m > 0.0) for each in self.attached]
+        films = [line.diameter_m + film_m * (line.diameter_m > 0.0) for line in self.attached]
         return self.diameter_m + film_m + _alike_or_each(films)
 
     def with_attached(self, attached: AttachedEach) -> Cable:

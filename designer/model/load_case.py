@@ -31,7 +31,7 @@ from designer.model.region import Region
 from designer.model.robot import Platform, Robot
 from designer.model.space import Orientations
 
-MOST_WRENCHES = 64
+MAX_WRENCHES = 64
 """The corners of a box in all six parts of a wrench."""
 
 
@@ -45,8 +45,8 @@ class WrenchSet(checked.Value):
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
-        if not 1 <= len(self.wrenches_N) <= MOST_WRENCHES:
-            raise ValueError(f"a set has 1 to {MOST_WRENCHES} wrenches, not {len(self.wrenches_N)}")
+        if not 1 <= len(self.wrenches_N) <= MAX_WRENCHES:
+            raise ValueError(f"a set has 1 to {MAX_WRENCHES} wrenches, not {len(self.wrenches_N)}")
 
     @classmethod
     def between(cls, first_N: FloatArray, last_N: FloatArray) -> WrenchSet:
@@ -63,7 +63,7 @@ class WrenchSet(checked.Value):
         """Return the same, so many times as large."""
         return replace(self, wrenches_N=factor * self.wrenches_N)
 
-    def beside(self, wrench_N: FloatArray, step: float) -> Iterator[FloatArray]:
+    def neighbours(self, wrench_N: FloatArray, step: float) -> Iterator[FloatArray]:
         """Yield the wrenches of a box by a step, of half its width, from one (6,) of them."""
         if not self.is_box:
             return
@@ -85,7 +85,7 @@ _SAME_DIRECTION = 1e-12
 FIRST_WINDS = 8
 EACH = "each"
 """Of a lost cable: each in turn."""
-MOST_DIRECTIONS = 512
+MAX_DIRECTIONS = 512
 """Of a load case with a set of wrenches: each is solved in all samples, for all ropes."""
 
 
@@ -164,11 +164,11 @@ class Loaded:
     wrench_N: FloatArray | None = None
 
     @property
-    def is_turned(self) -> bool:
+    def is_direction_searched(self) -> bool:
         """Whether its wind, inertia force or wrench is the worst of many, to be searched."""
-        return next(self.turned(1.0), None) is not None
+        return next(self.perturbed(1.0), None) is not None
 
-    def turned(self, step: float) -> Iterator[Loaded]:
+    def perturbed(self, step: float) -> Iterator[Loaded]:
         """Yield the same with wind, inertia force or wrench changed a little: by a step aside."""
         robot, lost, wrench_N = self.bare[0], self.lost_cable, self.wrench_N
         if self.wind is not None and self.case.searches_wind(robot):
@@ -178,7 +178,7 @@ class Loaded:
             for along in _aside(self.inertia, free_axes(robot), step):
                 yield self.case.under(*self.bare, self.wind, along, lost, wrench_N)
         if wrench_N is not None and self.case.wrench_set is not None:
-            for other_N in self.case.wrench_set.beside(wrench_N, step):
+            for other_N in self.case.wrench_set.neighbours(wrench_N, step):
                 yield self.case.under(*self.bare, self.wind, self.inertia, lost, other_N)
 
     @property
@@ -325,7 +325,7 @@ class LoadCase:
     def _directions(self, robot: Robot) -> tuple[Sequence[Any], ...]:
         """Return the directions of wind and inertia, the lost cables and the wrenches (6,)."""
         winds = [None] if self.wind is None else list(self.wind.directions(robot))
-        pushes = [None] if self.acceleration_m_per_s2 == 0.0 else list(_spread(robot))
+        pushes = [None] if self.acceleration_m_per_s2 == 0.0 else list(_inertia_directions(robot))
         lost: list[int | None] = [None]
         if self.cable_lost is not None:
             any_cable = self.cable_lost == EACH
@@ -410,8 +410,8 @@ def free_axes(robot: Robot) -> FloatArray:
     return robot.level[[0, 2]] if robot.is_planar else np.eye(3)
 
 
-def _spread(robot: Robot) -> FloatArray:
-    """Return directions of a force that moves the platform (n, 3)."""
+def _inertia_directions(robot: Robot) -> FloatArray:
+    """Return unit vectors of a force that moves the platform (n, 3)."""
     axes = free_axes(robot)
     steps = np.array(list(product((-1.0, 0.0, 1.0), repeat=len(axes))))
     size = np.abs(steps).sum(axis=1)

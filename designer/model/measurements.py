@@ -118,7 +118,9 @@ class Measurements(checked.Value):
     @property
     def files(self) -> tuple[Path, ...]:
         """All tables."""
-        of_sessions = [path for each in self.sessions for path in (each.file, *each.more_files)]
+        of_sessions = [
+            path for session in self.sessions for path in (session.file, *session.more_files)
+        ]
         return tuple(of_sessions) or (self.file, *self.more_files)
 
     def of_file(self, file: Path) -> Measurements:
@@ -207,25 +209,25 @@ class Coordinates:
         counts = self.is_read.sum(axis=0).tolist()
         return {name: n for name, n in zip(self.names, counts, strict=True) if n}
 
-    def off(self, poses: Poses) -> FloatArray:
+    def scaled_residuals(self, poses: Poses) -> FloatArray:
         """Return measured less those of poses (n_rows,), over the noise; 0 where not measured."""
         angles = np.zeros((len(self.values), 3))
         if self.is_read[:, 3:].any():
             angles = Rotation.from_matrix(poses.rotations).as_euler(self.axes)
-        off = self.values - np.hstack([poses.position_m, angles])
-        off[:, 3:] = (off[:, 3:] + np.pi) % (2.0 * np.pi) - np.pi
-        return np.nan_to_num(off / self.noise)
+        residual = self.values - np.hstack([poses.position_m, angles])
+        residual[:, 3:] = (residual[:, 3:] + np.pi) % (2.0 * np.pi) - np.pi
+        return np.nan_to_num(residual / self.noise)
 
-    def left(self, poses: Poses) -> dict[str, dict[str, float]]:
-        """Return, of each that was measured, its rows and the root mean square of `off`."""
-        square = np.sum(self.off(poses) ** 2, axis=0)
+    def rms_residuals(self, poses: Poses) -> dict[str, dict[str, float]]:
+        """Return, the rows of each that was measured, and the root mean square of its residuals."""
+        square = np.sum(self.scaled_residuals(poses) ** 2, axis=0)
         rms = dict(zip(self.names, square.tolist(), strict=True))
         return {
             name: {"rows": n, "rms_over_noise": float(np.sqrt(rms[name] / n))}
             for name, n in self.counts.items()
         }
 
-    def put_into(self, poses: Poses) -> Poses:
+    def imposed_on(self, poses: Poses) -> Poses:
         """Return poses (n_rows,) with what was measured instead; angles that were not are 0."""
         position = np.where(self.is_read[:, :3], self.values[:, :3], poses.position_m)
         if not self.is_read[:, 3:].any():
@@ -323,8 +325,12 @@ class Measured:
     @property
     def columns(self) -> frozenset[str]:
         """Kinds of surroundings that were recorded: ``time``, ``temperature``, ``wind``."""
-        found = {"time": self.time_s, "temperature": self.temperature_C, "wind": self.wind_m_per_s}
-        return frozenset(name for name, values in found.items() if values is not None)
+        recorded = {
+            "time": self.time_s,
+            "temperature": self.temperature_C,
+            "wind": self.wind_m_per_s,
+        }
+        return frozenset(name for name, values in recorded.items() if values is not None)
 
     def part(self, rows: BoolArray) -> Measured:
         """Return some of the rows (n_rows,), of measured poses, as rows of one session."""
@@ -370,5 +376,5 @@ class Noise:
         return np.repeat([self.length_m, self.tension_N], n_cables)
 
 
-EVEN = Noise(1.0, 1.0, "none")
+UNIT_NOISE = Noise(1.0, 1.0, "none")
 """A metre and a newton alike: before anything is known of the noise."""

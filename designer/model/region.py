@@ -40,6 +40,15 @@ CHUNK = 2**15
 """Positions per chunk; a power of two keeps Sobol sequences balanced."""
 ON_A_SIDE = 1e-6
 """Relative to the size of the region: a position that is no farther from a side lies on it."""
+_STRAIGHT = 1e-9
+"""Relative: a corner that turns back by less lies on a straight side."""
+_BEYOND = 1e-12
+"""Relative: by so much a region is made larger before boxes are cut at its border."""
+_OFF_LINE = 1e-9
+"""Relative: points that stray less from a straight line lie on it."""
+_UNIT_SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+_MAX_VERTICES = 256
+"""Of a long list only the first points are tried as corners: all of it is tried anyway."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -248,12 +257,6 @@ def grid_of(*axes: ArrayLike) -> FloatArray:
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
 
 
-_STRAIGHT = 1e-9
-"""Relative: a corner that turns back by less lies on a straight side."""
-_BEYOND = 1e-12
-"""Relative: by so much a region is made larger before boxes are cut at its border."""
-
-
 @checked.reports_field
 @dataclass(frozen=True, slots=True, eq=False)
 class Prism(Region):
@@ -443,11 +446,6 @@ class Prism(Region):
         return BoxFrame(np.zeros(3), np.eye(3), low[None], high[None], sides)
 
 
-_OFF_LINE = 1e-9
-"""Relative: points that stray less from a straight line lie on it."""
-_UNIT_SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-
-
 @checked.reports_field
 @dataclass(frozen=True, slots=True, eq=False)
 class Rectangle(Region):
@@ -579,10 +577,6 @@ class Rectangle(Region):
         return BoxFrame(np.array([*self.ends_m[0], 0.0]), axes, low, high, np.zeros((0, 3)))
 
 
-_MOST_VERTICES = 256
-"""Of a long list only the first points are tried as corners: all of it is tried anyway."""
-
-
 @checked.reports_field
 @dataclass(frozen=True, slots=True, eq=False)
 class PointList(Region):
@@ -627,7 +621,7 @@ class PointList(Region):
         return self.points_m[rng.integers(len(self.points_m), size=count)]
 
     def border(self) -> Border:
-        return Border(self.points_m[:_MOST_VERTICES], np.empty((0, 2, 3)), [])
+        return Border(self.points_m[:_MAX_VERTICES], np.empty((0, 2, 3)), [])
 
     def frame(self) -> BoxFrame:
         """Return each point as a box without size."""

@@ -25,9 +25,14 @@ from designer.spelling import vector
 
 _STRAIGHT = 1e-9
 """Sine of the angle to a point straight behind, from which on that counts as straight."""
+_APART = 1e-7
+_AT_AN_END = 1.0 / 3.0
+"""Chance that a sample of a range has a component at its lowest value; the same for the highest."""
+FILLING = 16
+"""Orientations inside a range that are tried beside its middle and its corners."""
 
 
-class Following(checked.Value, ABC):
+class OrientationLaw(checked.Value, ABC):
     """A law from the position to the orientations in which the platform is asked for there."""
 
     __slots__ = ()
@@ -53,7 +58,7 @@ class Following(checked.Value, ABC):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Toward(Following):
+class Toward(OrientationLaw):
     """An axis of the platform points at a point, by the shortest turn from its drawing.
 
     The rotation vector is along :math:`a \\times d`, of the angle between the axis a and the
@@ -77,7 +82,9 @@ class Toward(Following):
         angle = np.arctan2(size, along @ axis)
         turn = across * np.divide(angle, size, out=np.zeros_like(size), where=size > 0.0)[:, None]
         is_behind = (along @ axis < 0.0) & (size <= _STRAIGHT * np.linalg.norm(along, axis=1))
-        turn[is_behind] = np.pi * _across(axis)
+        if is_behind.any():
+            normal = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+            turn[is_behind] = np.pi * (normal / np.linalg.norm(normal))
         return np.asarray(turn[:, None])
 
     @property
@@ -87,7 +94,7 @@ class Toward(Following):
 
 
 @dataclass(frozen=True, eq=False)
-class TurnTable(Following):
+class OrientationTable(OrientationLaw):
     """Rotation vectors at some positions, interpolated between them.
 
     By :math:`\\sum_i w_i\\,|x - x_i|` and a constant, the sum that passes through all rows and, on
@@ -129,7 +136,7 @@ class TurnTable(Following):
 
 
 @dataclass(frozen=True, eq=False)
-class EachPose(Following):
+class ListedOrientations(OrientationLaw):
     """The orientations of listed poses, each at its own position."""
 
     positions_m: checked.Points  #: (n_positions, 3): Positions, no two alike [m]
@@ -138,14 +145,14 @@ class EachPose(Following):
     rotation_vectors_rad: FloatArray
 
     @classmethod
-    def of(cls, positions_m: ArrayLike, rotation_vectors_rad: ArrayLike) -> EachPose:
+    def of(cls, positions_m: ArrayLike, rotation_vectors_rad: ArrayLike) -> ListedOrientations:
         """Return it of poses in any order: positions and rotation vectors (n_poses, 3)."""
         turns = np.asarray(rotation_vectors_rad, dtype=np.float64)
         positions, owner = np.unique(positions_m, axis=0, return_inverse=True)
         order = np.argsort(owner, kind="stable")
-        first = np.searchsorted(owner[order], np.arange(len(positions) + 1))
-        count = int(np.diff(first).max())
-        rows = np.minimum(first[:-1, None] + np.arange(count), first[1:, None] - 1)
+        start = np.searchsorted(owner[order], np.arange(len(positions) + 1))
+        count = int(np.diff(start).max())
+        rows = np.minimum(start[:-1, None] + np.arange(count), start[1:, None] - 1)
         return cls(frozen_array(positions), frozen_array(turns[order][rows]))
 
     @property
@@ -165,24 +172,11 @@ class EachPose(Following):
         return "as each pose of the list has it"
 
 
-def _across(axis: FloatArray) -> FloatArray:
-    """Return a unit vector across a unit vector (3,)."""
-    across = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-    return np.asarray(across / np.linalg.norm(across))
-
-
 def _distance_m(points_m: FloatArray, rows_m: FloatArray) -> FloatArray:
     """Return the distances (n_points, n_rows) [m]."""
     from scipy.spatial.distance import cdist
 
     return np.asarray(cdist(points_m, rows_m))
-
-
-_APART = 1e-7
-_AT_AN_END = 1.0 / 3.0
-"""Chance that a sample of a range has a component at its lowest value; the same for the highest."""
-FILLING = 16
-"""Orientations inside a range that are tried beside its middle and its corners."""
 
 
 @checked.reports_field
@@ -197,13 +191,13 @@ class Orientations:
     range_rad : array (2, 3) or None
         Lowest and highest components of the rotation vector, where everything between them is
         asked for [rad]; ``turns_rad`` are then samples of it.
-    law : Following or None
+    law : OrientationLaw or None
         Orientations that depend on the position, instead of all these.
     """
 
     turns_rad: checked.Points = field(default_factory=lambda: frozen_array(np.zeros((1, 3))))
     range_rad: Annotated[FloatArray, checked.Shape((2, 3))] | None = None
-    law: Following | None = None
+    law: OrientationLaw | None = None
 
     def __post_init__(self) -> None:
         checked.check_fields(self)
@@ -241,20 +235,20 @@ class Orientations:
         return self.law.turns_rad(positions_m)
 
 
-def turn_of(place: FloatArray) -> FloatArray:
+def rotation_vector_of(place: FloatArray) -> FloatArray:
     """Return the rotation vector of a place (n_coordinates,), zeros where it has none [rad]."""
     return place[3:] if len(place) > 3 else np.zeros(3)
 
 
-def named_turn(place: FloatArray, name: str = "rotation_vector") -> dict[str, FloatArray]:
+def named_orientation(place: FloatArray, name: str = "rotation_vector") -> dict[str, FloatArray]:
     """Return the orientation of a place as files of results name it; none if it is not turned."""
-    turn = turn_of(place)
+    turn = rotation_vector_of(place)
     return {name: turn} if turn.any() else {}
 
 
 def named_pose(place: FloatArray) -> dict[str, FloatArray]:
     """Return a place as files of results name it, with its orientation where it is turned."""
-    return {**named_position(place), **named_turn(place)}
+    return {**named_position(place), **named_orientation(place)}
 
 
 def named_position(place: FloatArray) -> dict[str, FloatArray]:
@@ -264,7 +258,7 @@ def named_position(place: FloatArray) -> dict[str, FloatArray]:
 
 def named_place(place: FloatArray | None) -> dict[str, FloatArray | None]:
     """Return a place (n_coordinates,) as files of results name it, with its orientation."""
-    turn = None if place is None else turn_of(place)
+    turn = None if place is None else rotation_vector_of(place)
     return {"pose": None if place is None else place[:3], "rotation_vector": turn}
 
 

@@ -13,7 +13,7 @@ from designer.arrays import FloatArray
 
 Input = Literal["payload", "modulus", "linear_mass", "breaking_load", "exit_points"]
 INPUTS: tuple[Input, ...] = get_args(Input)
-MOST_DEVIATION = 0.2
+MAX_DEVIATION = 0.2
 """Largest relative standard deviation: beyond it, a normal quantity may come near zero."""
 LEAST_DEVIATION = -0.9
 """Lower end of a uniform relative deviation: a quantity keeps a tenth at least."""
@@ -97,13 +97,13 @@ class Uncertainty:
         for name in INPUTS[:-1]:
             spread = getattr(self, name)
             if isinstance(spread, Normal):
-                checked.Number(most=MOST_DEVIATION).require(name, spread.standard_deviation)
+                checked.Number(most=MAX_DEVIATION).require(name, spread.standard_deviation)
             elif spread is not None:
                 checked.Number(least=LEAST_DEVIATION).require(name, spread.low)
 
     def spreads(self, modulus: Spread) -> Mapping[Input, Spread]:
         """Return what is not certain, with this of the modulus where the study says nothing."""
-        each: dict[Input, Spread | None] = {
+        spreads: dict[Input, Spread | None] = {
             "payload": self.payload,
             "modulus": modulus if self.modulus is None else self.modulus,
             "linear_mass": self.linear_mass,
@@ -112,6 +112,6 @@ class Uncertainty:
         }
         return {
             name: spread
-            for name, spread in each.items()
+            for name, spread in spreads.items()
             if spread is not None and not spread.is_certain
         }

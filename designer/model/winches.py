@@ -17,7 +17,7 @@ import numpy as np
 from designer import checked
 from designer.arrays import BoolArray, FloatArray, frozen_array
 
-MOST_LAYERS = 50
+MAX_LAYERS = 50
 DEAD_TURNS = 3
 """Turns that stay on the drum; crane standards ask for two at least."""
 ROPE_OVERSIZE = 0.05
@@ -58,7 +58,7 @@ class Drum(checked.Value):
 
     diameter_m: checked.Positive
     length_m: checked.Positive
-    layers: Annotated[int, checked.Number(least=1, most=MOST_LAYERS)] = 1
+    layers: Annotated[int, checked.Number(least=1, most=MAX_LAYERS)] = 1
     groove_pitch_m: checked.Positive | None = None
     dead_turns: Annotated[int, checked.Number(least=0)] = DEAD_TURNS
     sheave_distance_m: checked.Positive | None = None
@@ -79,27 +79,27 @@ class Drum(checked.Value):
         return max(round(self.layers * rope_m / self._thickest_m(rope_m)), 1)
 
     def diameters_m(self, rope_m: float) -> FloatArray:
-        """Return the diameter of each layer about the rope's centre (`MOST_LAYERS`,) [m]."""
+        """Return the diameter of each layer about the rope's centre (`MAX_LAYERS`,) [m]."""
         thick_m = self._thickest_m(rope_m)
         pitch_m = self.groove_pitch_m or thick_m
         step_m = math.sqrt(max(thick_m**2 - pitch_m**2 / 4.0, 0.0))
-        return np.asarray(self.diameter_m + thick_m + 2.0 * step_m * np.arange(MOST_LAYERS))
+        return np.asarray(self.diameter_m + thick_m + 2.0 * step_m * np.arange(MAX_LAYERS))
 
     def turn_m(self, rope_m: float) -> float:
         """Return the rope of one turn of the lowest layer [m]."""
         return float(self.taken_m(rope_m)[1][0])
 
     def taken_m(self, rope_m: float) -> tuple[FloatArray, FloatArray]:
-        """Return turns of each layer, and the length of one (`MOST_LAYERS`,) [m].
+        """Return turns of each layer, and the length of one (`MAX_LAYERS`,) [m].
 
         Beside the dead turns; none at all where the rope does not fit.
         """
         pitch_m = self.groove_pitch_m or self._thickest_m(rope_m)
         turn_m = np.hypot(math.pi * self.diameters_m(rope_m), pitch_m)
         count = math.floor(self.length_m / pitch_m * (1.0 + 1e-12)) if self.fits(rope_m) else 0
-        turns = np.where(np.arange(MOST_LAYERS) % 2 == 0, float(count), count - 1.0)
+        turns = np.where(np.arange(MAX_LAYERS) % 2 == 0, float(count), count - 1.0)
         turns[0] -= self.dead_turns
-        return (turns if turns[0] >= 0.0 and count > 1 else np.zeros(MOST_LAYERS)), turn_m
+        return (turns if turns[0] >= 0.0 and count > 1 else np.zeros(MAX_LAYERS)), turn_m
 
     def capacity_m(self, rope_m: float) -> float:
         """Return how much rope it takes up and pays out [m]."""
@@ -195,8 +195,8 @@ class Winches(checked.Value):
         With n sheaves of efficiency η_s between them T / η_s^n where the winch pulls, or is about
         to, and T η_s^n where the rope is paid out.
         """
-        kept = self.reeving_efficiency
-        return np.asarray(tension_N * np.where(is_driven, kept, 1.0 / kept))
+        efficiency = self.reeving_efficiency
+        return np.asarray(tension_N * np.where(is_driven, efficiency, 1.0 / efficiency))
 
     def torque_Nm(
         self,

@@ -80,7 +80,7 @@ class Workspace(checked.Value):
         draw = self.samples, self.sampling, self.seed
         is_short = self.samples <= CHUNK
         for chunk in (
-            _kept_samples_m(self.region, *draw) if is_short else self.region.samples_m(*draw)
+            _cached_samples_m(self.region, *draw) if is_short else self.region.samples_m(*draw)
         ):
             yield from (chunk[start : start + size] for start in range(0, len(chunk), size))
 
@@ -104,13 +104,13 @@ class Workspace(checked.Value):
         """
         count = max(most // self.orientations.count, 1)
         rng = np.random.default_rng(self.seed)
-        kept, draws = np.empty((0, 3)), np.empty(0)
+        drawn, draws = np.empty((0, 3)), np.empty(0)
         for positions in self.positions_m():
-            kept = np.concatenate([kept, positions])
+            drawn = np.concatenate([drawn, positions])
             draws = np.concatenate([draws, rng.random(len(positions))])
-            first = np.sort(np.argsort(draws)[:count])
-            kept, draws = kept[first], draws[first]
-        return self.space.places(kept)
+            lowest = np.sort(np.argsort(draws)[:count])
+            drawn, draws = drawn[lowest], draws[lowest]
+        return self.space.places(drawn)
 
     @property
     def served(self) -> tuple[Verdict, ...]:
@@ -133,7 +133,7 @@ class Workspace(checked.Value):
 
 
 @lru_cache(maxsize=8)
-def _kept_samples_m(
+def _cached_samples_m(
     region: Region, count: int, sampling: Sampling, seed: int
 ) -> tuple[FloatArray, ...]:
     """Return the samples of a region: every candidate of a selection is tried at the same."""

@@ -25,12 +25,11 @@ from designer.model.space import Space
 from designer.model.verdict import Requirement
 from designer.model.workspace import Workspace
 from designer.progress import SILENT
-from designer.selection.candidate import Candidate, candidates_of, undominated
+from designer.selection.candidate import Candidate, candidates_of, offered, undominated
 from designer.selection.cases import governing
+from designer.selection.compare import Screen
 from designer.selection.criteria import criteria_of
-from designer.selection.prices import offered
 from designer.selection.requirements import CaseLoads, evaluate
-from designer.selection.screen import Screen
 from designer.selection.select import at_samples
 from designer.selection.verify import verify_sizes
 from designer.sizing.newton import size_poses

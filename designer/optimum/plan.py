@@ -42,8 +42,7 @@ from designer.errors import Fault, InputError
 from designer.io.config.schema import StudySection
 from designer.model.region import Prism, Rectangle
 from designer.optimum.measures import MEASURES, Measure, for_study, measure_at
-from designer.selection.candidate import common_currency
-from designer.selection.prices import offered, with_prices
+from designer.selection.candidate import common_currency, offered, with_prices
 from designer.spelling import did_you_mean
 from designer.study import Study
 from designer.sweeps.plan import Base, Change, value_at, why_no_value

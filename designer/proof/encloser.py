@@ -102,7 +102,7 @@ def halves(low: FloatArray, high: FloatArray, cut: IntArray) -> tuple[FloatArray
 def covers_of(space: Space) -> list[Cover]:
     """Return what covers a space: one for each orientation of a position, one for a range."""
     frame, ends = space.region.frame(), space.orientations.range_rad
-    assert frame is not None  # asked before, by `why_not`
+    assert frame is not None  # asked before, by `unsupported_reason`
     made = []
     if space.orientations.law is not None:  # of listed positions, each a box without size
         turns = space.orientations.at(frame.low).swapaxes(0, 1)
@@ -193,7 +193,7 @@ def _touching(boxes: BoxEnds, others: BoxEnds, axis: int) -> BoxEnds:
     return np.concatenate([low for low, _ in faces]), np.concatenate([high for _, high in faces])
 
 
-def why_not(robot: Robot, space: Space) -> str:
+def unsupported_reason(robot: Robot, space: Space) -> str:
     """Return why nothing can be proved of a robot in a space; empty where something can."""
     if robot.pulley_radius_m != 0.0:
         return "cables that run over pulleys are not enclosed"
@@ -237,7 +237,9 @@ class Encloser:
         self._size = np.abs(np.concatenate([robot.exit_points_m, *ends])).max()
         self._least_N = robot.tension_min_N if robot.is_redundant else 0.0
         self._sag = robot.sag_max if robot.is_redundant else None
-        weight = float(np.mean(cable.weight_N_per_m))  # `why_not` refuses those that differ
+        weight = float(
+            np.mean(cable.weight_N_per_m)
+        )  # `unsupported_reason` refuses those that differ
         levers = np.linalg.norm(robot.attachments_m, axis=1)
         self._reach = float(levers.max()) or 1.0
         self._fuzz = _ULPS * max(float(self._size + self._reach), 1.0)

@@ -25,7 +25,7 @@ from designer.proof.encloser import (
     Encloser,
     covers_of,
     halves,
-    why_not,
+    unsupported_reason,
 )
 
 Status = Literal["proved", "partial", "refuted", "off"]
@@ -122,7 +122,7 @@ def prove(
         Called with the share of the boxes that are tried; the rest is the most that is to come. The
         share of the volume says nothing of that, since the last of it may take the most.
     """
-    reason = why_not(robot, space)
+    reason = unsupported_reason(robot, space)
     if reason:
         return Proof("off", found=value, reason=reason)
     search = _BranchAndBound(robot, cable, covers_of(space), value, within, enough)

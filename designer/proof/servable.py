@@ -29,7 +29,15 @@ from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.robot import Poses, Robot
 from designer.model.space import Space
-from designer.proof.encloser import BoxEnds, Cover, Encloser, border_m, covers_of, halves, why_not
+from designer.proof.encloser import (
+    BoxEnds,
+    Cover,
+    Encloser,
+    border_m,
+    covers_of,
+    halves,
+    unsupported_reason,
+)
 from designer.proof.prove import Budget
 from designer.statics.geometry import upright_exit_points_m, upright_poses
 
@@ -68,7 +76,11 @@ def servable(robot: Robot, space: Space, budget: Budget) -> Servable | None:
     That is over pulleys, where the orientation has a range, and without a load.
     """
     load_N = float(np.linalg.norm(robot.loads_N()[0, :3]))
-    if why_not(robot, space) or space.orientations.range_rad is not None or load_N == 0.0:
+    if (
+        unsupported_reason(robot, space)
+        or space.orientations.range_rad is not None
+        or load_N == 0.0
+    ):
         return None
     size = float(np.ptp(np.vstack([robot.exit_points_m, space.region.bounds_m]), axis=0).max())
     density = _LIGHT * load_N / size / STANDARD_GRAVITY_M_PER_S2

@@ -16,7 +16,7 @@ from jinja2.ext import Extension
 from jinja2.lexer import Token, TokenStream
 
 from designer import __version__
-from designer.io.output import keep, kept_path
+from designer.io.output import cache_path, write_cache
 
 
 class FlowingText(Extension):
@@ -57,11 +57,11 @@ class KeptTemplates(BytecodeCache):
     def dump_bytecode(self, bucket: Bucket) -> None:
         """Keep code, over that of an older source."""
         code = bucket.bytecode_to_string()
-        keep(_path(bucket), _digest(code) + code)
+        write_cache(_path(bucket), _digest(code) + code)
 
 
 def _path(bucket: Bucket) -> Path:
-    return kept_path("templates", bucket.key)
+    return cache_path("templates", bucket.key)
 
 
 def _digest(code: bytes) -> bytes:

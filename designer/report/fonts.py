@@ -14,7 +14,7 @@ from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
 
-from designer.io.output import keep, kept_path
+from designer.io.output import cache_path, write_cache
 
 FACES = (
     ("Report Sans", 400, "normal", "DejaVuSans"),
@@ -56,13 +56,13 @@ def _letters_of(file: str, letters: str) -> str:
     """Return these letters of a font as a WOFF file in base64, kept for other runs."""
     made_of = (file, letters, version("matplotlib"), version("fonttools"))
     name = hashlib.sha256(repr(made_of).encode()).hexdigest()[:16]
-    path = kept_path("fonts", f"{name}.woff")
+    path = cache_path("fonts", f"{name}.woff")
     try:
         font = path.read_bytes()
     except OSError:
         font = _subset(file, letters)
         if letters == _ALONE:
-            keep(path, font)
+            write_cache(path, font)
     return base64.b64encode(font).decode()
 
 

@@ -18,8 +18,7 @@ from markupsafe import Markup
 
 from designer import spelling
 from designer.analysis.comparison import ComparisonLine
-from designer.analysis.edge import EdgeProfile
-from designer.analysis.maps import Served, WorkspaceMaps
+from designer.analysis.maps import CoverageCurve, EdgeProfile, WorkspaceMaps
 from designer.arrays import FloatArray
 from designer.grades.grade import Grade
 from designer.model.region import Region
@@ -28,7 +27,7 @@ from designer.model.verdict import Requirement, State
 from designer.report import format as fmt
 from designer.report.figures.colours import DIAMETER, RATIO
 from designer.selection.assignment import Assignment
-from designer.selection.usable import UsableSize
+from designer.selection.result import CoveredSize
 from designer.study import Study
 
 if TYPE_CHECKING:
@@ -218,9 +217,9 @@ def length_of_statements(html: str) -> int:
     return sum(len(Markup(text).striptags()) for text in texts)
 
 
-def runs_that_serve_none(sizes: Iterable[UsableSize]) -> list[list[UsableSize]]:
+def runs_that_serve_none(sizes: Iterable[CoveredSize]) -> list[list[CoveredSize]]:
     """Return sizes one by one, but three and more in a row that serve nothing together."""
-    runs: list[list[UsableSize]] = []
+    runs: list[list[CoveredSize]] = []
     for serves_some, run in groupby(sizes, key=lambda size: size.fraction > 0.0):
         same = list(run)
         runs += [same] if not serves_some and len(same) > 2 else [[size] for size in same]
@@ -392,7 +391,7 @@ def ends_of_holding(profile: EdgeProfile) -> tuple[float | None, float | None]:
     return last, straight
 
 
-def diameter_of_nine_tenths_m(served: Served) -> float | None:
+def diameter_of_nine_tenths_m(served: CoverageCurve) -> float | None:
     """Return the diameter that serves nine poses of ten [m]; None where none does."""
     most = np.flatnonzero(served.share >= 0.9)
     return float(served.diameter_m[most[0]]) if len(most) else None

@@ -91,7 +91,7 @@ class Plots:
         if pose is not None:
             statics = pose.sizing.statics
         elif governing is not None:
-            statics = governing.alone
+            statics = governing.equilibrium
         else:
             raise InputError([self._analysis.study.source.fault("pose", "is missing")])
         return _plotter(robot_stage(statics, pen=SCREEN)[0], off_screen)

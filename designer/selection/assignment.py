@@ -1,40 +1,40 @@
-"""Which rope goes onto which cable: one for all of them, or one for each group."""
+"""Which rope goes onto which cable, and what robot that makes.
+
+One rope for all cables, or one for each group; stiffness and clearances follow from them.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.model.cable import Cable, Cables
+from designer.effects.design import AsBuilt
+from designer.model.cable import Cable, Cables, Material
+from designer.model.robot import Robot
+from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate
+from designer.selection.family import CaseNeed
 from designer.study import CableGroup
+from designer.workspace.clearance import Interference, survey
+from designer.workspace.stiffness import StiffnessSurvey, survey_stiffness
+from designer.workspace.sweep import HangingCables, WorkspaceMap, survey_hanging
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GroupVerification:
-    """What given cables meet in the workspace.
+    """What given cables meet in the workspace."""
 
-    Parameters
-    ----------
-    worst_place : array (n_groups, n_coordinates)
-        Places where each group is used most [m, rad].
-    utilisation : array (n_groups,)
-        Largest over allowable tension there; inf if a pose cannot be held at all.
-    longest_m, shortest_m : array (n_cables,)
-        Longest and shortest unstrained length that each cable has [m]; the latter NaN where it was
-        not searched for.
-    is_refined : bool
-        Whether the worst poses were searched for between the samples as well. Where a sample
-        already fails, they were not.
-    """
-
-    worst_place: FloatArray
+    worst_place: FloatArray  #: (n_groups, n_coordinates), where each group is used most [m, rad]
     utilisation: FloatArray
-    longest_m: FloatArray
-    shortest_m: FloatArray
+    """(n_groups,) largest over allowable tension there; inf if a pose cannot be held at all."""
+    longest_m: FloatArray  #: (n_cables,) longest unstrained length that each cable has [m]
+    shortest_m: FloatArray  #: (n_cables,) shortest; NaN where it was not searched for [m]
     is_refined: bool
+    """Whether it was searched between the samples as well; not where a sample already fails."""
 
     @property
     def holds(self) -> bool:
@@ -49,21 +49,11 @@ class GroupVerification:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Assignment:
-    """Ropes on the cables; one rope for all cables is one group of all of them, without a name.
+    """Ropes on the cables; one rope for all cables is one group of all of them, without a name."""
 
-    Parameters
-    ----------
-    groups : tuple of CableGroup
-        The groups, every cable in one of them; empty where no ropes were found.
-    ropes : tuple of Candidate
-        The rope of each group.
-    verification : GroupVerification
-        What they meet together.
-    """
-
-    groups: tuple[CableGroup, ...]
-    ropes: tuple[Candidate, ...]
-    verification: GroupVerification
+    groups: tuple[CableGroup, ...]  #: every cable in one of them; empty where no ropes were found
+    ropes: tuple[Candidate, ...]  #: of each group
+    verification: GroupVerification  #: what they meet together
 
     @property
     def is_found(self) -> bool:
@@ -130,13 +120,92 @@ def for_all(rope: Candidate | None) -> Assignment:
     """Return one rope on all cables; nothing assigned without one."""
     if rope is None:
         return NOT_ASSIGNED
-    met = rope.verification
-    every = CableGroup("", tuple(range(1, len(met.longest_m) + 1)))
+    worst = rope.verification
+    place, utilisation = worst.worst_place[None], np.array([worst.utilisation])
     verification = GroupVerification(
-        met.worst_place[None],
-        np.array([met.utilisation]),
-        met.longest_m,
-        met.shortest_m,
-        met.is_refined,
+        place, utilisation, worst.longest_m, worst.shortest_m, worst.is_refined
     )
-    return Assignment((every,), (rope,), verification)
+    all_cables = CableGroup("", tuple(range(1, len(worst.longest_m) + 1)))
+    return Assignment((all_cables,), (rope,), verification)
+
+
+@dataclass(frozen=True, slots=True)
+class DesignCable:
+    """The cables that the design comes to."""
+
+    cable: Cable | Cables  #: as they are on the machine
+    name: str  #: what they are, for the reader of a report
+    ropes: tuple[Candidate, ...] = ()  #: of each cable; empty where of the configured family
+
+    @property
+    def turn_m(self) -> FloatArray:
+        """Rope on one turn of the drum that its grade suggests (1 or n_cables,) [m].
+
+        About the centre of the rope, in one layer; NaN where no drum is suggested.
+        """
+        turns = [rope.grade.drum_turn_m(rope.size) for rope in self.ropes]
+        return np.array(turns or [np.nan])
+
+
+@dataclass(frozen=True, eq=False)
+class Qualities:
+    """Stiffness and clearances over the workspace, each when it is first read."""
+
+    robot: Robot  #: as built
+    workspace: Workspace
+    cable: DesignCable
+
+    @cached_property
+    def stiffness(self) -> StiffnessSurvey | None:
+        """None if no sample is held stably."""
+        return survey_stiffness(self.robot, self.workspace, self.cable.cable)
+
+    @cached_property
+    def interference(self) -> Interference | None:
+        """None if the study asks for no clearance."""
+        clearance_m = self.workspace.clearance_m
+        if clearance_m is None:
+            return None
+        return survey(self.robot, self.workspace, self.cable.cable, clearance_m)
+
+    @cached_property
+    def hanging(self) -> HangingCables:
+        """Cables far longer than their chord, or below the floor."""
+        return survey_hanging(self.robot, self.workspace, self.cable.cable)
+
+
+def design_cable(
+    family_map: WorkspaceMap,
+    assignment: Assignment,
+    family: Material,
+    needs: Sequence[CaseNeed],
+) -> DesignCable | None:
+    """Return the ropes that were found, else the thinnest cable of the family.
+
+    None where no cable holds everywhere. ``needs`` is what load cases need of the family.
+    """
+    if assignment.is_found:
+        return DesignCable(assignment.cable, assignment.name, assignment.by_cable)
+    diameter_m = np.nan if family_map.sagging is None else family_map.sagging.diameter_m
+    if needs:
+        diameter_m = float(np.max([need.diameter_m for need in needs]))
+    if np.isnan(diameter_m):
+        return None
+    name = f"{1e3 * diameter_m:.1f} mm of the configured family"
+    return DesignCable(family.cable(diameter_m), name)
+
+
+def qualities_of(
+    workspace: Workspace,
+    family_map: WorkspaceMap,
+    assignment: Assignment,
+    built: AsBuilt,
+    material: Material,
+    needs: Sequence[CaseNeed],
+) -> Qualities | None:
+    """Return what the cables of the design make of it; None where no cable holds everywhere.
+
+    ``needs`` is what load cases need of the configured family.
+    """
+    cable = design_cable(family_map, assignment, built.material(material), needs)
+    return None if cable is None else Qualities(built.robot, workspace, cable)

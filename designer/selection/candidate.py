@@ -1,12 +1,20 @@
-"""What may go onto the cables: a size of a grade as it would be there, and what is known of it."""
+"""What may go onto the cables: sizes of grades as they would be there, their figures and prices.
+
+Candidates are compared by objectives, each a number of which less is better. A rope costs what the
+study's own list says, or its grade; where neither has a price, about what curves of the price of a
+metre over the diameter say, c₁ d + c₂ d², for mooring ropes (MoorPy,
+library/MoorProps_newCosts.yaml, 2024; OMAE2025-156384). Ropes of machines are sold elsewhere and in
+other lengths, hence the wide interval, which is ours.
+"""
 
 from __future__ import annotations
 
 import math
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -14,12 +22,11 @@ import numpy as np
 from designer import checked
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade, Size
-from designer.model.cable import Cable, SizeUnits
+from designer.model.cable import Cable, Offer, SizeUnits
 from designer.model.load_case import STATIC
 from designer.model.verdict import Requirement
 from designer.selection.cases import CaseResult, governing
-from designer.selection.efficiency import Allowance
-from designer.selection.objectives import UNKNOWN, CandidateFigures
+from designer.selection.reeving import Allowance
 from designer.selection.verify import NOT_TRIED, Sampled, Verification
 from designer.study import Objective, Selection
 
@@ -31,55 +38,77 @@ _INCHES = ("in", "inch", "ft", "foot", "feet")
 _IN_INCHES = re.compile(r"\d\s*(in\.?|inch|inches|[\"″])$")
 
 
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """An objective: the field of `CandidateFigures`, its name at length and in a word, its unit."""
+
+    field: str
+    title: str
+    word: str
+    unit: str
+    more_is_better: bool = False
+
+
+MEANINGS: Mapping[Objective, Meaning] = {
+    "mass": Meaning("mass_kg", "mass of all cables", "mass", "kg"),
+    "cost": Meaning("cost", "price of all cables", "price", ""),
+    "drum_diameter": Meaning("drum_diameter_m", "drum diameter", "drum diameter", "m"),
+    "max_tension": Meaning("max_tension_N", "largest tension", "tension", "N"),
+    "stiffness": Meaning("stiffness_N_per_m", "smallest stiffness", "stiffness", "N/m", True),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class CandidateFigures:
+    """What a candidate is compared by; NaN where it is not known."""
+
+    mass_kg: float = math.nan  #: of all cables, each at the longest length that it needs [kg]
+    cost: float = math.nan  #: price of these lengths, in the currency of the comparison
+    drum_diameter_m: float = math.nan  #: drum or sheave that the grade's D/d asks for [m]
+    max_tension_N: float = math.nan  #: largest tension, which the winch has to bear [N]
+    stiffness_N_per_m: float = math.nan  #: smallest force over displacement of the platform [N/m]
+
+    def value(self, objective: Objective) -> float:
+        """Return the figure of an objective, in the sense in which it is shown."""
+        return float(getattr(self, MEANINGS[objective].field))
+
+    def burden(self, objective: Objective) -> float:
+        """Return the figure such that less is better; one that is not known is the worst."""
+        value = self.value(objective)
+        if np.isnan(value):
+            return np.inf
+        return -value if MEANINGS[objective].more_is_better else value
+
+
+UNKNOWN = CandidateFigures()
+"""Of a candidate that was not solved yet."""
+
+
 @dataclass(slots=True, eq=False, repr=False)
 class Candidate(checked.Shown):
     """One size of one grade as it would be on the machine; what is known of it grows.
 
     First its figures alone, then what it meets over the samples, then between them; last whether
     it is chosen, and why.
-
-    Parameters
-    ----------
-    grade, size
-        The product.
-    cable : Cable
-        Its figures as the solver takes them, efficiency and safety factor applied.
-    efficiency : float
-        Share of the breaking load that end fittings, bending and sheaves leave.
-    verification : Verification
-        What it meets in the load case that governs.
-    cases : tuple of CaseResult
-        What it meets in each direction of each load case, of each case in the worst one where its
-        standing is known; up to the first that it does not hold.
-    figures : CandidateFigures
-        What it is compared by.
-    rejected_by : Requirement or None
-        A requirement beside strength that it is known to fail.
-    standing : str
-        What became of it; empty where it was not compared.
-    reason : str
-        Why, for the reader of a report: decided once, read by all pages and files.
-    dominated_by : Candidate or None
-        A candidate that is as good in everything it is compared by and better in something.
-    preferred_to : Candidate or None
-        The best one, where this one is as good and is chosen for the units of its size.
-    requirements : tuple of Requirement
-        All that the study asks of it; empty where that was not evaluated in full.
     """
 
     grade: Grade
     size: Size
-    cable: Cable
-    efficiency: float = 1.0
-    verification: Verification = NOT_TRIED
+    cable: Cable  #: as the solver takes it, efficiency and safety factor applied
+    efficiency: float = 1.0  #: share of the breaking load that fittings, bending and sheaves leave
+    verification: Verification = NOT_TRIED  #: what it meets in the load case that governs
     cases: tuple[CaseResult, ...] = ()
-    figures: CandidateFigures = UNKNOWN
-    rejected_by: Requirement | None = None
-    standing: Standing | Literal[""] = ""
-    reason: str = ""
-    dominated_by: Candidate | None = None
+    """What it meets in each direction of each load case, of each case in the worst one where its
+    standing is known; up to the first that it does not hold."""
+    figures: CandidateFigures = UNKNOWN  #: what it is compared by
+    rejected_by: Requirement | None = None  #: beside strength, that it is known to fail
+    standing: Standing | Literal[""] = ""  #: what became of it; empty where it was not compared
+    reason: str = ""  #: why, for the reader: decided once, read by all pages and files
+    dominated_by: Candidate | None = None  #: as good in everything compared, better in something
     preferred_to: Candidate | None = None
+    """The best one, where this one is as good and is chosen for the units of its size."""
     requirements: tuple[Requirement, ...] = ()
+    """All that the study asks of it; empty where that was not evaluated in full."""
 
     @property
     def name(self) -> str:
@@ -192,11 +221,21 @@ def undominated(
     Stiffness is that of the cable as it is, see `designer.selection.cases`; with
     ``at_any_tension`` a rope beats another only where it is not stiffer whatever either meets.
     """
-    figures = np.array([_burdens(c.cable, c.size, by_price) for c in candidates]).reshape(-1, 4)
+    figures = np.array(
+        [
+            (
+                candidate.cable.mean_density_kg_per_m,
+                -candidate.cable.allowable_tension_N,
+                candidate.cable.axial_stiffness_N,
+                (candidate.size.price_per_m or 0.0) if by_price else 0.0,
+            )
+            for candidate in candidates
+        ]
+    ).reshape(-1, 4)
     softest, stiffest = figures.copy(), figures.copy()
-    if at_any_tension:
-        ranges = [_stiffness_range_N(candidate.cable) for candidate in candidates]
-        softest[:, 2], stiffest[:, 2] = np.array(ranges).reshape(-1, 2).T
+    for k, candidate in enumerate(candidates):
+        if at_any_tension and (law := candidate.cable.stiffening) is not None:
+            softest[k, 2], stiffest[k, 2] = min(law.axial_stiffness_N), max(law.axial_stiffness_N)
 
     def is_beaten(k: int) -> bool:
         beats = (stiffest <= softest[k]).all(axis=1)
@@ -207,15 +246,80 @@ def undominated(
     return tuple(candidates[k] for k in sorted(unbeaten, key=lambda k: tuple(figures[k])))
 
 
-def _burdens(cable: Cable, size: Size, by_price: bool) -> tuple[float, float, float, float]:
-    """Return what a rope is to have little of."""
-    price = (size.price_per_m or 0.0) if by_price else 0.0
-    weight, strength = cable.mean_density_kg_per_m, cable.allowable_tension_N
-    return weight, -strength, cable.axial_stiffness_N, price
+# Prices
 
 
-def _stiffness_range_N(cable: Cable) -> tuple[float, float]:
-    """Return the least and the largest EA that a rope can have [N]."""
-    law = cable.stiffening
-    stiffnesses = (cable.axial_stiffness_N,) if law is None else law.axial_stiffness_N
-    return min(stiffnesses), max(stiffnesses)
+@dataclass(frozen=True, slots=True)
+class PriceEstimate:
+    """Prices that are borrowed: of which year, from where, and what share of them one may pay."""
+
+    currency: str
+    year: int
+    low: float
+    high: float
+    source: str
+
+
+BORROWED = PriceEstimate(
+    "USD", 2024, 0.5, 2.0, "MoorPy, library/MoorProps_newCosts.yaml; OMAE2025-156384"
+)
+_PER_M = {
+    "steel": (258.0, 14_300.0),
+    "polyester": (117.0, 12_700.0),
+    "nylon": (9.84, 14_300.0),
+    "HMPE": (-2_270.0, 110_000.0),
+}
+"""c₁ [USD/m²] and c₂ [USD/m³], by material."""
+_THICK_M = 0.05
+"""Least diameter for a curve that is negative for thin ropes."""
+
+
+def with_prices(
+    grades: Sequence[Grade], selection: Selection
+) -> tuple[Sequence[Grade], PriceEstimate | None]:
+    """Return the grades with the prices that a study compares, and what is borrowed of these.
+
+    The prices of the study's own list come before those of grades; where there are such, sizes
+    priced in another currency have none. Borrowed are prices where the cost is an objective and no
+    grade that the study allows has a price of its own; materials without a curve stay without.
+    """
+    if selection.price_list is not None:
+        currency, offers_of = selection.price_list.currency, selection.price_list.offers_of
+        return [_listed(grade, currency, offers_of(grade.id)) for grade in grades], None
+    allowed = [grade for grade in grades if grade.why_excluded(selection) is None]
+    if "cost" not in selection.objectives or common_currency(allowed) is not None:
+        return grades, None
+    return [_estimated(grade) for grade in grades], BORROWED
+
+
+@lru_cache(maxsize=2**14)  # the same sizes whenever asked: candidates are told apart by them
+def _listed(grade: Grade, currency: str, offers: tuple[Offer, ...]) -> Grade:
+    is_comparable = grade.currency == currency
+    if not offers and (is_comparable or grade.currency is None):
+        return grade
+    sizes = []
+    for size in grade.sizes:
+        prices = (o.price_per_m for o in offers if o.is_for(size.id, size.diameter_m))
+        own = size.price_per_m if is_comparable else None
+        sizes.append(replace(size, price_per_m=next(prices, own)))
+    return replace(grade, sizes=tuple(sizes), currency=currency)
+
+
+def offered(grades: Sequence[Grade], selection: Selection) -> list[Grade]:
+    """Return the grades that a study allows, with the prices that it compares."""
+    sold, _ = with_prices(grades, selection)
+    return [grade for grade in sold if grade.why_excluded(selection) is None]
+
+
+@lru_cache(maxsize=2**14)  # the same sizes whenever asked: candidates are told apart by them
+def _estimated(grade: Grade) -> Grade:
+    if grade.material not in _PER_M or any(s.price_per_m is not None for s in grade.sizes):
+        return grade
+    linear, square = _PER_M[grade.material]
+    sizes = tuple(
+        replace(size, price_per_m=size.diameter_m * (linear + square * size.diameter_m))
+        if linear > 0.0 or size.diameter_m >= _THICK_M
+        else size
+        for size in grade.sizes
+    )
+    return replace(grade, sizes=sizes, currency=BORROWED.currency)

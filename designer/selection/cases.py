@@ -526,7 +526,7 @@ def _with_lengths(result: CaseResult) -> CaseResult:
 
 
 def _can_worsen(result: CaseResult) -> bool:
-    return result.loaded.is_turned and result.verification.is_refined
+    return result.loaded.is_direction_searched and result.verification.is_refined
 
 
 def _worsened(result: CaseResult, passed: list[CaseResult]) -> CaseResult:
@@ -591,7 +591,7 @@ def worst_load_direction(
     """
     step = 0.5
     while step > 1e-6:
-        trials = [(severity_of(turned), turned) for turned in loaded.turned(step)]
+        trials = [(severity_of(turned), turned) for turned in loaded.perturbed(step)]
         summit = _summit(loaded, severity, trials)
         if summit is not None:
             trials.append((severity_of(summit), summit))

@@ -16,7 +16,6 @@ from functools import partial
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
-from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
 from designer.model.robot import Poses, Robot
@@ -25,7 +24,6 @@ from designer.model.workspace import Workspace
 from designer.progress import Advance, steps
 from designer.selection.cases import CaseResult, governing_directions, worst_load_direction
 from designer.selection.criteria import ROUNDING, WHERE, Criterion
-from designer.selection.rope_class import SOURCE, least_sheave_ratio
 from designer.statics.cable_loss import Fate
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
@@ -167,7 +165,7 @@ def _turned(
     again: Effort,
 ) -> tuple[Loaded, FloatArray]:
     """Turn wind and inertia force to where they are worst, and search the pose again, by turns."""
-    if not loaded.is_turned:
+    if not loaded.is_direction_searched:
         return loaded, extreme.place
     for _ in range(_MOST_ROUNDS):
         place = extreme.place
@@ -328,57 +326,3 @@ def _why_not_held(result: CaseResult) -> tuple[State, str]:
     loaded = result.loaded
     verdict = Verdict(int(solve_sagging(loaded.robot, result.pose, loaded.cable).verdict[0]))
     return verdict.state, verdict.clause
-
-
-def sheave_ratio_of(grade: Grade, size: Size, selection: Selection) -> Iterator[Requirement]:
-    """Yield the bending ratio, where the study has a sheave and a least ratio is known.
-
-    That is the maker's or, with a duty class, that of the rope's class where it is larger.
-    """
-    ratio = grade.sheave_ratio
-    least, source = (0.0, "") if ratio is None else (ratio.minimum, f"table of {grade.id}")
-    by_class = None if selection.duty_class == "none" else least_sheave_ratio(grade)
-    if by_class is not None and by_class[0] > least:
-        least, source = by_class[0], f"{SOURCE}: {by_class[1]}"
-    if selection.sheave_diameter_m is None or least == 0.0:
-        return
-    bending_ratio = selection.sheave_diameter_m / size.diameter_m
-    yield Requirement(
-        id="sheave_ratio",
-        title="Sheave",
-        formula="D / d ≥ the least ratio of the construction",
-        source=source,
-        state=State.HOLDS if bending_ratio >= least else State.FAILS,
-        load_case="all",
-        demand=least,
-        capacity=bending_ratio,
-        utilisation=least / bending_ratio,
-        remark="" if ratio is not None and least == ratio.minimum else source,
-    )
-
-
-def drum_of(
-    longest_m: FloatArray, shortest_m: FloatArray, selection: Selection | None
-) -> Iterator[Requirement]:
-    """Yield the largest stroke of a cable, where the study says what a drum takes up.
-
-    Of the longest and the shortest unstrained length (n_cables,) in all load cases [m].
-    """
-    capacity_m = None if selection is None else selection.limits.drum_capacity_m
-    stroke_m = longest_m - shortest_m
-    if capacity_m is None or not np.isfinite(stroke_m).any():
-        return
-    cable = int(np.nan_to_num(stroke_m, nan=-1.0).argmax())
-    yield Requirement(
-        id="drum_capacity",
-        title="Drum",
-        formula="stroke: largest − smallest unstrained length ≤ what the drum takes up",
-        source="selection.limits.drum_capacity, beside its dead turns",
-        state=State.HOLDS if stroke_m[cable] <= capacity_m else State.FAILS,
-        load_case="all",
-        demand=float(stroke_m[cable]),
-        capacity=capacity_m,
-        unit="m",
-        utilisation=float(stroke_m[cable]) / capacity_m,
-        cable=cable + 1,
-    )

@@ -1,25 +1,33 @@
-"""What the choice of a product came to."""
+"""What the choice of a product came to: why each size is in or out, what the sizes serve."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
+import numpy as np
+
 from designer import checked
+from designer.arrays import BoolArray, FloatArray
 from designer.grades.grade import Grade, Size
-from designer.model.cable import Material, Preference, PriceList
+from designer.model.cable import Cable, Material, Preference, PriceList
 from designer.model.load_case import STATIC
+from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
+from designer.model.workspace import Workspace
 from designer.proof.prove import Proof
-from designer.selection.candidate import Candidate, Standing
+from designer.selection.candidate import Candidate, PriceEstimate, Standing
 from designer.selection.compare import AS_GOOD, changed_figures, preference_words, rejection_words
-from designer.selection.prices import PriceEstimate
-from designer.selection.usable import Usable
+from designer.statics.inverse import solve_sagging
+from designer.statics.sizes import is_quick
 from designer.study import Objective
+from designer.workspace.demand import is_counted
 
 Outcome = Literal["fits", "rejected", "too_thin", "no_finite_cable", "open"]
+"""``rejected``: sizes are strong enough, but fail another requirement; ``too_thin``: no size holds;
+``no_finite_cable``: proved; ``open``: a pose was neither solved nor proved to be impossible."""
 WHY: Mapping[Standing, str] = {
     "undominated": "holds and is Pareto-optimal, but not the best in the first objective",
     "dominated": "holds, but another one is as good in every objective and better in one",
@@ -29,6 +37,8 @@ WHY: Mapping[Standing, str] = {
     "not_held": "no equilibrium was found somewhere",
 }
 """Why sizes of a standing were not chosen; ``{}`` stands for the title of a requirement."""
+_FEW_PLACES, _FEW_POSITIONS = 1000, 100
+"""Asked at least of robots that are slow to solve: places, and positions in all orientations."""
 _BY_ID = {"json": lambda grade: {"grade": grade.id}}
 
 
@@ -48,61 +58,33 @@ class NotTried:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Exclusion:
-    """Sizes that were not chosen for the same reason.
+    """Sizes that were not chosen for the same reason."""
 
-    Parameters
-    ----------
-    standing : str
-        What became of them; ``not_tried`` where they were not solved.
-    why : str
-        Why, in words for all of them.
-    sizes, grades : int
-        How many, and of how many grades.
-    example : str
-        The one nearest to its limit, and its own reason.
-    """
-
-    standing: Standing | Literal["not_tried"]
-    why: str
-    sizes: int
-    grades: int
-    example: str
+    standing: Standing | Literal["not_tried"]  #: ``not_tried`` where they were not solved
+    why: str  #: in words for all of them
+    sizes: int  #: how many
+    grades: int  #: of how many grades
+    example: str  #: the one nearest to its limit, and its own reason
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GradeOutcome:
-    """What became of a grade.
-
-    Parameters
-    ----------
-    grade : Grade
-        The grade.
-    family : Material
-        Its continuous family, efficiency and safety factor applied.
-    continuous_diameter_m : float
-        The thinnest member of the family that holds everywhere [m]; NaN where none does.
-    candidates : tuple of Candidate
-        Its sizes, ascending.
-    outcome : str
-        ``fits``; ``rejected`` (sizes are strong enough, but fail another requirement); ``too_thin``
-        (no size holds); ``no_finite_cable`` (proved); ``open`` (a pose was neither solved nor
-        proved to be impossible).
-    best : Candidate or None
-        The best size by the objective that decides, of those that meet all requirements; where no
-        size of any grade does, of those that are strong enough.
-    verdict : Verdict or None
-        Of the pose that no member of the family holds; None where there is none.
-    """
+    """What became of a grade."""
 
     grade: Grade = field(metadata=_BY_ID)
     family: Material = field(metadata={"json": None})
+    """Its continuous family, efficiency and safety factor applied."""
     continuous_diameter_m: float
-    candidates: tuple[Candidate, ...] = field(metadata={"json": None})
+    """The thinnest member of the family that holds everywhere [m]; NaN where none does."""
+    candidates: tuple[Candidate, ...] = field(metadata={"json": None})  #: its sizes, ascending
     outcome: Outcome
     best: Candidate | None = field(
         metadata={"json": lambda best: {"best_size_id": best and best.size.id}}
     )
+    """By the objective that decides, of the sizes that meet all requirements; where no size of any
+    grade does, of those that are strong enough."""
     verdict: Verdict | None = field(default=None, metadata={"json": None})
+    """Of the pose that no member of the family holds; None where there is none."""
 
     also_in_files: ClassVar = ("sentence",)
 
@@ -172,56 +154,108 @@ def _excess(candidate: Candidate) -> float:
     return math.inf if failed is None or math.isnan(failed.utilisation) else failed.utilisation
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class CoveredSize:
+    """What one size serves."""
+
+    size: Size = field(metadata={"json": lambda s: {"size_id": s.id, "diameter_m": s.diameter_m}})
+    cable: Cable = field(metadata={"json": None})  #: as the solver takes it
+    fraction: float  #: share of the samples at which it stays within its allowable tension
+    volume_m3: float | None  #: that share of the region [m³]; None for a list of points
+    lost_fraction: float = 0.0
+    """Share of the samples that a thinner size of the grade serves and this one does not: it may be
+    weaker, or too heavy for what it bears."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SizeCoverage:
+    """What the sizes of a grade serve, thinnest first; by so many sample positions."""
+
+    grade: Grade
+    sizes: tuple[CoveredSize, ...]
+    samples: int
+
+    @property
+    def differs(self) -> bool:
+        """Whether some sizes serve more than others."""
+        return len({size.fraction for size in self.sizes}) > 1
+
+    @property
+    def is_nested(self) -> bool:
+        """Whether each size serves all that thinner ones serve."""
+        return all(size.lost_fraction == 0.0 for size in self.sizes)
+
+    @property
+    def first_for_good(self) -> int | None:
+        """Index of the size from which on all serve everything; None where the last does not."""
+        partly = [k for k, size in enumerate(self.sizes) if size.fraction < 1.0]
+        index = partly[-1] + 1 if partly else 0
+        return index if index < len(self.sizes) else None
+
+
+def serves(robot: Robot, workspace: Workspace, cable: Cable, places: FloatArray) -> BoolArray:
+    """Tell which places (n, n_coordinates) count and keep a cable within its allowable tension."""
+    statics = solve_sagging(robot, Poses.at(places), cable)
+    counts = is_counted(statics, workspace.hangs_below)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(counts & (statics.largest_tension_N <= cable.allowable_tension_N))
+
+
+def usable(
+    robot: Robot, workspace: Workspace, grade: Grade, cables: Sequence[tuple[Size, Cable]]
+) -> SizeCoverage:
+    """Find at how many samples each size of a grade, thinnest first, serves with its own figures.
+
+    A position is served where the size holds it in every orientation that the study asks for. One
+    that the study leaves out because a cable hangs below the platform is not served. On robots that
+    are slow to solve only a part of the samples is asked, fairly drawn.
+    """
+    samples = 0
+    served, lost = np.zeros((2, len(cables)))
+    few = max(_FEW_PLACES, _FEW_POSITIONS * workspace.orientations.count)
+    for some in workspace.places() if is_quick(robot) else [workspace.thinned(few)]:
+        each = np.stack([serves(robot, workspace, cable, some) for _, cable in cables])
+        at = each.reshape(len(cables), -1, workspace.orientations.count).all(axis=2)
+        samples += at.shape[1]
+        served += at.sum(axis=1)
+        lost += (np.logical_or.accumulate(at, axis=0) & ~at).sum(axis=1)
+    volume_m3 = workspace.region.volume_m3
+    return SizeCoverage(
+        grade,
+        tuple(
+            CoveredSize(size, cable, share, None if volume_m3 is None else share * volume_m3, gone)
+            for (size, cable), share, gone in zip(
+                cables, (served / samples).tolist(), (lost / samples).tolist(), strict=True
+            )
+        ),
+        samples,
+    )
+
+
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class SelectionResult(checked.Shown):
-    """The choice, and why.
+    """The choice, and why."""
 
-    Parameters
-    ----------
-    outcomes : tuple of GradeOutcome
-        Every grade that the study allows.
-    chosen : Candidate or None
-        The best product by the objective that decides, of those that hold everywhere.
-    reason : str or None
-        Why none was chosen.
-    alternatives : tuple of GradeOutcome
-        Where none was chosen: grades outside the study's list that would hold.
-    objectives : tuple of str
-        What candidates were compared by, the one that decides first.
-    prefer : str
-        Units of the sizes that take the place of others as good as they are.
-    currency : str or None
-        Of the costs; None where nothing has a price.
-    price_estimate : PriceEstimate or None
-        What the prices are, where they are borrowed.
-    price_list : PriceList or None
-        The study's own prices, which come before those of grades.
-    not_tried : tuple of NotTried
-        What was not solved, and why.
-    proof : Proof or None
-        What is proved of the chosen product, in the load case that governs; None where nothing was
-        to be.
-    untrusted : Candidate or None
-        The best of what is excluded for the trust of its figures alone, where it would hold and be
-        better than the chosen product.
-    usable : Usable or None
-        What the sizes of the chosen grade serve; where none was chosen, of the grade that serves
-        most. None where nothing was tried.
-    """
-
-    outcomes: tuple[GradeOutcome, ...]
-    chosen: Candidate | None
-    reason: str | None
+    outcomes: tuple[GradeOutcome, ...]  #: of every grade that the study allows
+    chosen: Candidate | None  #: best by the objective that decides, of those that hold everywhere
+    reason: str | None  #: why none was chosen
     alternatives: tuple[GradeOutcome, ...] = ()
-    objectives: tuple[Objective, ...] = ("mass",)
+    """Where none was chosen: grades outside the study's list that would hold."""
+    objectives: tuple[Objective, ...] = ("mass",)  #: the one that decides first
     prefer: Preference = "none"
-    currency: str | None = None
-    price_estimate: PriceEstimate | None = None
-    price_list: PriceList | None = None
-    not_tried: tuple[NotTried, ...] = ()
-    usable: Usable | None = None
+    """Units of the sizes that take the place of others as good as they are."""
+    currency: str | None = None  #: of the costs; None where nothing has a price
+    price_estimate: PriceEstimate | None = None  #: what the prices are, where they are borrowed
+    price_list: PriceList | None = None  #: the study's own, which come before those of grades
+    not_tried: tuple[NotTried, ...] = ()  #: what was not solved, and why
+    usable: SizeCoverage | None = None
+    """What the sizes of the chosen grade serve; where none was chosen, of the grade that serves
+    most. None where nothing was tried."""
     proof: Proof | None = None
+    """Of the chosen product, in the load case that governs; None where nothing was to be proved."""
     untrusted: Candidate | None = None
+    """The best of what is excluded for the trust of its figures alone, where it would hold and be
+    better than the chosen product."""
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:

@@ -21,10 +21,14 @@ from designer.model.workspace import Workspace
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Budget, Proof
 from designer.selection.candidate import (
+    MEANINGS,
     Candidate,
+    CandidateFigures,
     candidates_of,
     common_currency,
     cost,
+    offered,
+    with_prices,
 )
 from designer.selection.cases import (
     CaseResult,
@@ -38,16 +42,19 @@ from designer.selection.cases import (
     resettled,
     with_stiffness_of,
 )
-from designer.selection.compare import best_of, may_win, settle, settle_standing
-from designer.selection.continuous import ContinuousOptimum, continuous_optima
+from designer.selection.compare import Screen, best_of, may_win, settle, settle_standing
 from designer.selection.criteria import criteria_of
-from designer.selection.efficiency import Allowance, why_not_bent
-from designer.selection.objectives import MEANINGS, CandidateFigures
-from designer.selection.prices import offered, with_prices
-from designer.selection.requirements import sheave_ratio_of
-from designer.selection.result import GradeOutcome, NotTried, Outcome, SelectionResult
-from designer.selection.screen import Screen
-from designer.selection.usable import Usable, serves, usable
+from designer.selection.family import ContinuousOptimum, continuous_optima
+from designer.selection.reeving import Allowance, sheave_ratio_of, why_not_bent
+from designer.selection.result import (
+    GradeOutcome,
+    NotTried,
+    Outcome,
+    SelectionResult,
+    SizeCoverage,
+    serves,
+    usable,
+)
 from designer.selection.verify import Verification, verify_sizes
 from designer.statics.sizes import is_quick
 from designer.study import Selection
@@ -401,7 +408,7 @@ def _usable(
     workspace: Workspace,
     outcomes: Sequence[GradeOutcome],
     chosen: Candidate | None,
-) -> Usable | None:
+) -> SizeCoverage | None:
     """Return what the sizes of the chosen grade serve, or of the one whose best serves most.
 
     The latter at a few poses only where each takes long.

@@ -46,12 +46,11 @@ from designer.documents.plain import Json
 from designer.effects.load import load_effects
 from designer.effects.registry import KnownEffects
 from designer.errors import DesignerError, Fault, InputError, described
-from designer.grades.registry import Catalogue, kept_catalogue
+from designer.grades.registry import Catalogue, cached_catalogue
 from designer.io.config.reader import checked, study_of
 from designer.model.verdict import Verdict
 from designer.plugins import Plugins, find_plugins
-from designer.selection.candidate import common_currency
-from designer.selection.prices import offered, with_prices
+from designer.selection.candidate import common_currency, offered, with_prices
 from designer.spelling import did_you_mean
 from designer.study import Study
 from designer.units import describe
@@ -88,7 +87,7 @@ class Base:
 
     def catalogue(self, study: Study | None = None) -> Catalogue:
         """Return the grades that its studies, or one of them, choose from."""
-        return kept_catalogue((study or self.study()).catalogues, _plugins(self.with_plugins)[0])
+        return cached_catalogue((study or self.study()).catalogues, _plugins(self.with_plugins)[0])
 
     def result(self, study: Study) -> Json:
         """Return as much of ``result.json`` as what is kept of it asks for."""

@@ -23,11 +23,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from designer import __version__
+from designer.analysis.analyse import TemporaryFolder
 from designer.errors import DesignerError, InputError, OutputError, described
 from designer.io.output import explained
 from designer.io.process import SPAWN, children_are_deaf, end_with_parent, written
 from designer.progress import SILENT, Reporter
-from designer.sweeps.plan import SweepPlan, solve_points
+from designer.sweeps.plan import SweepPlan, read_sweep, solve_points
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -308,3 +309,32 @@ def cluster(address: str) -> tuple[MakeExecutor, int]:
     except (OSError, ValueError, TypeError) as error:
         raise DesignerError(f"--cluster {address}: nothing answers there ({error})") from None
     return lambda: client.get_executor(pure=False), max(sum(client.nthreads().values()), 1)
+
+
+def sweep(
+    plan: Path | str, store: Path | str | None = None, *, workers: int | None = None
+) -> xr.Dataset:
+    """Return a sweep's points, solved in ``workers`` processes, as `designer sweep` does.
+
+    In a script it stands below ``if __name__ == "__main__":``, since processes read the script.
+
+    Parameters
+    ----------
+    plan : Path or str
+        The YAML file of the sweep.
+    store : Path or str, optional
+        Zarr store to keep; a sweep that is in it goes on. Nothing is kept if left out.
+    workers : int, optional
+        All processors if left out.
+
+    Raises
+    ------
+    InputError
+        If the plan is wrong.
+    """
+    scratch = TemporaryFolder()
+    path = scratch.folder / "sweep.zarr" if store is None else Path(store)
+    laid_out, count = read_sweep(Path(plan), True), workers or processor_count()
+    with opened(path, laid_out) as points:
+        run(laid_out, points, processes(count), count)
+    return read_store(path).load()

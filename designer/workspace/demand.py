@@ -53,11 +53,11 @@ def size_worst(
     if space.orientations.count == 1:
         return places, sizing
     demand = demand_of(sizing.diameter_m, sizing.statics, workspace.hangs_below)
-    places = in_worst_turn(space, places, demand)
+    places = at_worst_orientation(space, places, demand)
     return places, size_poses(robot, Poses.at(places), material)
 
 
-def in_worst_turn(space: Space, places: FloatArray, values: FloatArray) -> FloatArray:
+def at_worst_orientation(space: Space, places: FloatArray, values: FloatArray) -> FloatArray:
     """Return of each position the place whose orientation asks for the most.
 
     ``places`` (n, n_coordinates) are those of `Space.places`, ``values`` (n,) is their demand.

@@ -159,8 +159,8 @@ class Effort:
     starts: int = 40  # Climbs of each extreme at most, beside those from the landmarks
     finalists: int = 12  # How many of them go on to the end
     revisited: int = 3  # The highest ends, about which starts closer together are tried
-    beside: int = 4  # Such starts about each of them at most
-    tried_beside: int = 128  # Places of which they are the largest
+    neighbours: int = 4  # Such starts about each of them at most
+    neighbour_trials: int = 128  # Places of which they are the largest
     trials: int = (
         4  # Random places a coordinate tried about each in an iteration, beside those along it
     )
@@ -177,8 +177,8 @@ LIGHT = Effort(
     starts=6,
     finalists=2,
     revisited=1,
-    beside=2,
-    tried_beside=32,
+    neighbours=2,
+    neighbour_trials=32,
     from_landmarks=False,
     tolerance=1e-7,
 )
@@ -188,7 +188,7 @@ ONE_CLIMB = replace(LIGHT, starts=1, finalists=1, revisited=0, tolerance=1e-2, r
 _FOLLOWING = replace(LIGHT, starts=4, finalists=4, from_landmarks=True, tolerance=1e-9)
 """For searches that know where others like them have ended."""
 _MANY, _SCOUTS = 12, 6
-"""More searches than this beside each other are made in full for so many of them alone."""
+"""Of more searches than this so many are made in full."""
 
 
 def refine(
@@ -300,11 +300,11 @@ class _PoseSearch:
         space, active = self._space, np.arange(self._count)
         if space.is_discrete:
             points = np.concatenate(list(map(space.places, space.region.samples_m(1, "grid", 0))))
-            self._ask_each([points] * self._count, active)
+            self._evaluate_each([points] * self._count, active)
             return self._worsts
         marks, common = self._marks, np.concatenate([self._marks, self._scatter(0)])
         places = [np.concatenate([of_search, common]) for of_search in starts]
-        values = self._ask_each(places, active)
+        values = self._evaluate_each(places, active)
         landmarks = [len(of_search) + np.arange(len(marks)) for of_search in starts]
         self._climb_all(active, places, values, landmarks)
         for iteration in range(1, self._effort.rounds + 1):
@@ -312,7 +312,7 @@ class _PoseSearch:
             before = self._best[active]
             scatter, near = self._scatter(iteration), self._near_the_best(iteration, active)
             places = [np.concatenate([scatter, of_search]) for of_search in near]
-            values = self._ask_each(places, active) if len(active) else []
+            values = self._evaluate_each(places, active) if len(active) else []
             threshold = before + np.where(np.isneginf(before), 0.0, 1e-10 * np.abs(before))
             higher = [of_search > least for of_search, least in zip(values, threshold, strict=True)]
             is_over = self._is_over[active]
@@ -353,13 +353,13 @@ class _PoseSearch:
             clouds.append(self._space.nearest((places[:, None] + cloud).reshape(-1, n)))
         return clouds
 
-    def _ask_each(self, places: Sequence[FloatArray], among: IntArray) -> list[FloatArray]:
+    def _evaluate_each(self, places: Sequence[FloatArray], among: IntArray) -> list[FloatArray]:
         """Return what places (n, n_coordinates) of some searches ask for (n, n_extremes)."""
         counts = [len(of_search) for of_search in places]
-        values = self._ask(np.concatenate(places), np.repeat(among, counts))
+        values = self._evaluate(np.concatenate(places), np.repeat(among, counts))
         return np.split(values, np.cumsum(counts)[:-1])
 
-    def _ask(self, places: FloatArray, search: IntArray) -> FloatArray:
+    def _evaluate(self, places: FloatArray, search: IntArray) -> FloatArray:
         """Return what places ask for (n, n_extremes), and remember the largest of each search."""
         parts = [slice(at, at + _CHUNK) for at in range(0, len(places), _CHUNK)]
         values = np.concatenate([self._demand(places[part], search[part]) for part in parts])
@@ -405,12 +405,12 @@ class _PoseSearch:
         self._climb(climbs, 1e-3)
         climbs = self._finalists(climbs.part(self._in_reach(climbs)))
         self._climb(climbs, effort.tolerance, slides=True)
-        beside = self._beside(climbs)
-        self._climb(beside, 1e-3)
-        finalists = self._finalists(Climbs.joined([climbs, beside]))
+        neighbours = self._neighbours(climbs)
+        self._climb(neighbours, 1e-3)
+        finalists = self._finalists(Climbs.joined([climbs, neighbours]))
         self._climb(finalists, effort.tolerance, slides=True)  # those at their end stay there
 
-    def _beside(self, climbs: Climbs) -> Climbs:
+    def _neighbours(self, climbs: Climbs) -> Climbs:
         """Return starts about the ends of climbs, closer together than the parts of the space.
 
         Two maxima lie that near each other where different cables are the most loaded.
@@ -420,12 +420,12 @@ class _PoseSearch:
         if not len(ends):
             return ends
         reach = 1.5 / CELLS_A_SIDE
-        offsets = self._rng(_MAX_ITERATIONS).uniform(-reach, reach, (effort.tried_beside, n))
+        offsets = self._rng(_MAX_ITERATIONS).uniform(-reach, reach, (effort.neighbour_trials, n))
         places = self._space.nearest(ends.at[:, None] + offsets * self._size)
-        demand = self._ask_about(ends, places)
+        demand = self._evaluate_about(ends, places)
         rows, chosen = np.arange(len(ends)), []
         is_apart = self._is_apart(places, ends.at) & ~np.isneginf(demand)
-        for _ in range(effort.beside):
+        for _ in range(effort.neighbours):
             highest = np.where(is_apart, demand, -np.inf).argmax(axis=1)
             at, value = places[rows, highest], demand[rows, highest]
             starts = Climbs.beginning(ends.search, ends.extreme, at, value, _APART)
@@ -497,7 +497,7 @@ class _PoseSearch:
             trials = self._space.nearest(trials)
             onward = self._space.nearest(climb.at + 2.0 * climb.step)[:, None]
             trials = np.concatenate([trials, onward], axis=1)
-            demand = self._ask_about(climb, trials)
+            demand = self._evaluate_about(climb, trials)
             first = slice(None, directions.shape[1])
             in_cloud = demand[:, :-1].reshape(len(active), clouds, -1).max(axis=2)
             in_cloud[:, 0] = np.maximum(in_cloud[:, 0], demand[:, -1])
@@ -520,7 +520,7 @@ class _PoseSearch:
             grown = 1.1 * radii[rows, (in_cloud > climb.value[:, None]).argmax(axis=1)]
             climbs.radius[active] = np.where(better, grown, radii[:, -1] * shrinks)
 
-    def _ask_about(self, climbs: Climbs, places: FloatArray) -> FloatArray:
+    def _evaluate_about(self, climbs: Climbs, places: FloatArray) -> FloatArray:
         """Return each climb's own demand (n_climbs, …) at places (n_climbs, …, n_coordinates)."""
         rows = np.column_stack([climbs.search, places.reshape(len(climbs), -1)])
         # Climbs of several extremes that stand at the same place try the same places.
@@ -530,7 +530,7 @@ class _PoseSearch:
         distinct = np.sort(first)
         flat = places[distinct].reshape(len(distinct), -1, len(self._size))
         search = np.repeat(climbs.search[distinct], flat.shape[1])
-        demand = self._ask(flat.reshape(-1, len(self._size)), search)
+        demand = self._evaluate(flat.reshape(-1, len(self._size)), search)
         demand = demand.reshape(*flat.shape[:2], -1)
         values = demand[np.searchsorted(distinct, first[owner]), :, climbs.extreme]
         return values.reshape(places.shape[:-1])
@@ -568,7 +568,7 @@ class _PoseSearch:
                 across[:, :, None] + (share[..., None] * reach[..., None]) * normal[:, None, None]
             )
             places = self._space.nearest(climbs.at[:, None, None] + steps * size)
-            return places, self._ask_about(climbs, places)
+            return places, self._evaluate_about(climbs, places)
 
         for _ in range(3):
             part /= 16.0

@@ -37,17 +37,17 @@ _DIAMETERS_M = np.geomspace(1e-4, _THICKEST_M, 81)
 """Where to look for the first section that serves itself; the next one is 12 % thicker."""
 FIRST_TRIED_M = float(_DIAMETERS_M[_DIAMETERS_M.size // 2])
 """The middle of these."""
-_STILL = 1e-9
-_MOST_TURNS = 20
+_RTOL = 1e-9
+_MAX_ITERATIONS = 20
 
 
-def thinnest_that(serves: Callable[[float], bool]) -> float:
+def min_diameter_where(serves: Callable[[float], bool]) -> float:
     """Return the thinnest diameter that serves [m]; NaN where none does that a cable can have."""
     at = next((k for k, d in enumerate(_DIAMETERS_M.tolist()) if serves(d)), None)
     if at is None:
         return math.nan
     thin, thick = float(_DIAMETERS_M[max(at - 1, 0)]), float(_DIAMETERS_M[at])
-    while thick / thin > 1.0 + _STILL:
+    while thick / thin > 1.0 + _RTOL:
         middle = math.sqrt(thin * thick)
         thin, thick = (thin, middle) if serves(middle) else (middle, thick)
     return thick
@@ -58,7 +58,9 @@ def section_at(robot: Robot, pose: Poses, family_at: FamilyAt) -> float:
 
     NaN where none does that a cable can have.
     """
-    return thinnest_that(lambda d: float(size_poses(robot, pose, family_at(d)).diameter_m) <= d)
+    return min_diameter_where(
+        lambda d: float(size_poses(robot, pose, family_at(d)).diameter_m) <= d
+    )
 
 
 def thinnest(robot: Robot, family_at: FamilyAt) -> Generator[Material, Worst, float]:
@@ -74,11 +76,11 @@ def thinnest(robot: Robot, family_at: FamilyAt) -> Generator[Material, Worst, fl
         If that does not come to an end.
     """
     section, trial = 0.0, FIRST_TRIED_M
-    for _ in range(_MOST_TURNS):
+    for _ in range(_MAX_ITERATIONS):
         worst = yield family_at(trial)
         if not np.isfinite(worst.place).all():  # every pose is left out
             return math.nan
-        if worst.demand <= section * (1.0 + _STILL):
+        if worst.demand <= section * (1.0 + _RTOL):
             return section
         needed = section_at(robot, Poses.at(worst.place), family_at)
         if math.isnan(needed) or needed <= section:
@@ -92,16 +94,16 @@ def thinnest(robot: Robot, family_at: FamilyAt) -> Generator[Material, Worst, fl
 
 def in_lockstep(
     searches: Sequence[Generator[Yielded, Sent, Returned]],
-    answered: Callable[[Mapping[int, Yielded]], Mapping[int, Sent]],
+    answer_all: Callable[[Mapping[int, Yielded]], Mapping[int, Sent]],
 ) -> list[Returned]:
     """Return the results of searches that yield questions and are sent the answers.
 
-    ``answered`` answers, at once, all searches that have not ended, by their numbers.
+    ``answer_all`` answers, at once, all searches that have not ended, by their numbers.
     """
     results: dict[int, Returned] = {}
     questions = {k: next(search) for k, search in enumerate(searches)}
     while questions:
-        answers, questions = answered(questions), {}
+        answers, questions = answer_all(questions), {}
         for k, answer in answers.items():
             try:
                 questions[k] = searches[k].send(answer)

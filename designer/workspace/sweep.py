@@ -25,7 +25,7 @@ from designer.documents.plain import record
 from designer.errors import OutputError
 from designer.model.cable import Cable, Cables, Material
 from designer.model.robot import Poses, Robot
-from designer.model.space import named_pose, named_turn, turn_of
+from designer.model.space import named_orientation, named_pose, rotation_vector_of
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.progress import Advance
@@ -174,60 +174,6 @@ def _named(name: str, extreme: str) -> dict[str, Any]:
     return {"json": named}
 
 
-@dataclass(frozen=True, slots=True)
-class HangingCables:
-    """What hangs too far over a workspace; None where nothing does."""
-
-    #: samples looked at: those that are solved and count
-    samples: int = field(default=0, metadata={"json": None})
-    #: cables longer than `LONG` times their chord
-    long: Hanging | None = field(default=None, metadata=_named("long_cables", "length_over_chord"))
-    #: cables that hang below the floor; None also where the study has no floor
-    below_floor: Hanging | None = field(default=None, metadata=_named("below_floor", "lowest_m"))
-
-    def notes(self) -> Iterator[tuple[str, str]]:
-        """Yield a heading and a few words for each of the two that there is."""
-        kinds = (
-            ("long cables", self.long, "times its chord"),
-            ("below floor", self.below_floor, "m"),
-        )
-        for heading, hanging, unit in kinds:
-            if hanging is not None:
-                share = f"{hanging.samples / self.samples:.2%} of the samples"
-                yield (
-                    heading,
-                    f"{share}, cable {hanging.cable} at the worst {hanging.extreme:.4g} {unit}",
-                )
-
-
-def look_at(
-    hanging_cables: HangingCables,
-    values: FloatArray,
-    statics: Statics,
-    counts: BoolArray,
-    floor_m: float | None,
-) -> HangingCables:
-    """Return what was found before with these samples (n, n_coordinates) added, if they count.
-
-    No cable may hang below ``floor_m``, upright frame [m].
-    """
-    long = _add(hanging_cables.long, values, statics.length_over_chord, counts, LONG, sign=1.0)
-    below = hanging_cables.below_floor
-    if floor_m is not None:
-        below = _add(below, values, statics.lowest_m, counts, floor_m, sign=-1.0)
-    return HangingCables(hanging_cables.samples + int(counts.sum()), long, below)
-
-
-def survey_hanging(robot: Robot, workspace: Workspace, cable: Cable | Cables) -> HangingCables:
-    """Return which samples of the workspace have such a cable, with these cables on the machine."""
-    hanging_cables = HangingCables()
-    for places in workspace.places():
-        statics = solve_sagging(robot, Poses.at(places), cable)
-        counts = is_counted(statics, workspace.hangs_below)
-        hanging_cables = look_at(hanging_cables, places, statics, counts, workspace.floor_m)
-    return hanging_cables
-
-
 def _add(
     before: Hanging | None,
     places: FloatArray,
@@ -252,10 +198,62 @@ def _add(
     return Hanging(total, farthest.extreme, farthest.cable, farthest.place)
 
 
+@dataclass(frozen=True, slots=True)
+class HangingCables:
+    """What hangs too far over a workspace; None where nothing does."""
+
+    #: samples looked at: those that are solved and count
+    samples: int = field(default=0, metadata={"json": None})
+    #: cables longer than `LONG` times their chord
+    long: Hanging | None = field(default=None, metadata=_named("long_cables", "length_over_chord"))
+    #: cables that hang below the floor; None also where the study has no floor
+    below_floor: Hanging | None = field(default=None, metadata=_named("below_floor", "lowest_m"))
+
+    def with_samples(
+        self, places: FloatArray, statics: Statics, counts: BoolArray, floor_m: float | None
+    ) -> HangingCables:
+        """Return the same with samples (n, n_coordinates) added, if they count.
+
+        No cable may hang below ``floor_m``, upright frame [m].
+        """
+        long = _add(self.long, places, statics.length_over_chord, counts, LONG, sign=1.0)
+        below = self.below_floor
+        if floor_m is not None:
+            below = _add(below, places, statics.lowest_m, counts, floor_m, sign=-1.0)
+        return HangingCables(self.samples + int(counts.sum()), long, below)
+
+    def notes(self) -> Iterator[tuple[str, str]]:
+        """Yield a heading and a few words for each of the two that there is."""
+        kinds = (
+            ("long cables", self.long, "times its chord"),
+            ("below floor", self.below_floor, "m"),
+        )
+        for heading, hanging, unit in kinds:
+            if hanging is not None:
+                share = f"{hanging.samples / self.samples:.2%} of the samples"
+                yield (
+                    heading,
+                    f"{share}, cable {hanging.cable} at the worst {hanging.extreme:.4g} {unit}",
+                )
+
+
+def survey_hanging(robot: Robot, workspace: Workspace, cable: Cable | Cables) -> HangingCables:
+    """Return which samples of the workspace have such a cable, with these cables on the machine."""
+    hanging_cables = HangingCables()
+    for places in workspace.places():
+        statics = solve_sagging(robot, Poses.at(places), cable)
+        counts = is_counted(statics, workspace.hangs_below)
+        hanging_cables = hanging_cables.with_samples(places, statics, counts, workspace.floor_m)
+    return hanging_cables
+
+
 def _named_example(place: FloatArray | None) -> dict[str, FloatArray | None]:
     if place is None:
         return {"infeasible_example_m": None}
-    return {"infeasible_example_m": place[:3], **named_turn(place, "infeasible_rotation_vector")}
+    return {
+        "infeasible_example_m": place[:3],
+        **named_orientation(place, "infeasible_rotation_vector"),
+    }
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -275,7 +273,7 @@ class Extreme:
     @property
     def rotation_vector_rad(self) -> FloatArray:
         """How the platform is turned there (3,) [rad]."""
-        return turn_of(self.place)
+        return rotation_vector_of(self.place)
 
     @property
     def pose(self) -> Poses:
@@ -315,6 +313,7 @@ class Census:
 class WorkspaceMap(checked.Shown):
     """Sizing over the whole workspace."""
 
+    workspace: Workspace = field(metadata={"json": None})
     census: Census = field(metadata={"json": record})  #: verdict counts
     #: whether every pose of the region has a finite cable: every sample is solved (or left out on
     #: purpose) and the continuous search met no pose without one
@@ -389,6 +388,42 @@ class WorkspaceMap(checked.Shown):
         return None if self.infeasible_place is None else Poses.at(self.infeasible_place)
 
 
+class _Gathered:
+    """Running totals of a sweep, and the few samples that the search starts from."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        self._workspace = workspace
+        self.verdicts: Counter[int] = Counter()
+        self.hangs_below = 0
+        self.excluded = 0
+        self.hanging = HangingCables()
+        self.starts = Pool(workspace.space)
+        self.massless_starts = Pool(workspace.space)
+        self.sampled: Extreme | None = None
+        self.infeasible_example: FloatArray | None = None
+
+    def add(self, places: FloatArray, sizing: Sizing) -> None:
+        statics = sizing.statics
+        left_out = is_left_out(statics, self._workspace.hangs_below)
+        self.verdicts.update(dict(enumerate(np.bincount(statics.verdict).tolist())))
+        self.hangs_below += int(statics.hangs_below.sum())
+        self.excluded += int(left_out.sum())
+        counts = statics.is_solved & ~left_out
+        self.hanging = self.hanging.with_samples(places, statics, counts, self._workspace.floor_m)
+        diameter = np.where(counts, sizing.diameter_m, -np.inf)
+        self.starts.add(places, diameter)
+        straight = massless_demand_of(sizing, self._workspace.hangs_below)
+        self.massless_starts.add(places, straight)
+        at = int(np.argmax(diameter))
+        diameter_m = -np.inf if self.sampled is None else self.sampled.diameter_m
+        if diameter[at] > diameter_m:
+            tension = float(statics.largest_tension_N[at])
+            self.sampled = Extreme(places[at], float(diameter[at]), tension)
+        served = statics.is_solved | left_out
+        if self.infeasible_example is None and not served.all():
+            self.infeasible_example = places[int(np.argmin(served))]
+
+
 def map_workspace(
     robot: Robot,
     workspace: Workspace,
@@ -421,58 +456,6 @@ def map_workspace(
             gathered.add(places, sizing)
             store(places, sizing)
             progress(len(positions))
-    return _summarise(robot, workspace, material, gathered, file, with_massless)
-
-
-class _Gathered:
-    """Running totals of a sweep, and the few samples that the search starts from."""
-
-    def __init__(self, workspace: Workspace) -> None:
-        self._workspace = workspace
-        self.verdicts: Counter[int] = Counter()
-        self.hangs_below = 0
-        self.excluded = 0
-        self.hanging = HangingCables()
-        self.starts = Pool(workspace.space)
-        self.massless_starts = Pool(workspace.space)
-        self.sampled: Extreme | None = None
-        self.infeasible_example: FloatArray | None = None
-
-    def add(self, places: FloatArray, sizing: Sizing) -> None:
-        statics = sizing.statics
-        left_out = is_left_out(statics, self._workspace.hangs_below)
-        self.verdicts.update(dict(enumerate(np.bincount(statics.verdict).tolist())))
-        self.hangs_below += int(statics.hangs_below.sum())
-        self.excluded += int(left_out.sum())
-        counts = statics.is_solved & ~left_out
-        self.hanging = look_at(self.hanging, places, statics, counts, self._workspace.floor_m)
-        diameter = np.where(counts, sizing.diameter_m, -np.inf)
-        self.starts.add(places, diameter)
-        straight = massless_demand_of(sizing, self._workspace.hangs_below)
-        self.massless_starts.add(places, straight)
-        at = int(np.argmax(diameter))
-        diameter_m = -np.inf if self.sampled is None else self.sampled.diameter_m
-        if diameter[at] > diameter_m:
-            tension = float(statics.largest_tension_N[at])
-            self.sampled = Extreme(places[at], float(diameter[at]), tension)
-        served = statics.is_solved | left_out
-        if self.infeasible_example is None and not served.all():
-            self.infeasible_example = places[int(np.argmin(served))]
-
-    def census(self) -> Census:
-        statuses = {v.label: self.verdicts[int(v)] for v in Verdict}
-        totals = sum(statuses.values()), statuses, self.hangs_below, self.excluded
-        return Census(*totals, self.hanging)
-
-
-def _summarise(
-    robot: Robot,
-    workspace: Workspace,
-    material: Material,
-    gathered: _Gathered,
-    file: Path | None,
-    with_massless: bool,
-) -> WorkspaceMap:
     example = gathered.infeasible_example
     sagging = massless = None
     ratio = np.nan
@@ -493,8 +476,16 @@ def _summarise(
         if np.isfinite(worst.demand):
             diameter = material.diameter_for_tension_m(worst.demand)
             massless = Extreme(worst.place, diameter, worst.demand)
+    statuses = {v.label: gathered.verdicts[int(v)] for v in Verdict}
     return WorkspaceMap(
-        census=gathered.census(),
+        workspace=workspace,
+        census=Census(
+            samples=sum(statuses.values()),
+            statuses=statuses,
+            hangs_below=gathered.hangs_below,
+            excluded=gathered.excluded,
+            hanging=gathered.hanging,
+        ),
         is_feasible=sagging is not None,
         sagging=sagging,
         sampled=gathered.sampled,

@@ -191,7 +191,8 @@ def test_the_terminal_names_what_fails_its_cable_and_its_place() -> None:
     )  # fmt: skip
     analysis = SimpleNamespace(
         qualities=None, answer=Answer.NO, requirements=[requirement(State.HOLDS), failing],
-        unmet=[failing], terms=Terms("one static case", ()), findings=SimpleNamespace(adrift=()),
+        unmet=[failing], terms=Terms("one static case", ()),
+        findings=SimpleNamespace(equilibrium_losses=()),
     )  # fmt: skip
     answer, told = _summary_of_requirements(cast(Analysis, analysis))
     assert answer[1].endswith("1 of 2 hold")

@@ -14,10 +14,10 @@ from designer.errors import InputError
 from designer.io.config import read_study
 from designer.io.poses import poses_in, read_poses
 from designer.model.robot import Poses
-from designer.model.space import EachPose, Toward, TurnTable
+from designer.model.space import ListedOrientations, OrientationTable, Toward
 from designer.sizing.newton import size_poses
 from designer.study import Study
-from designer.workspace.best_turns import BestTurns
+from designer.workspace.best_orientations import BestOrientations
 from designer.workspace.refine import refine
 
 BODY = """\
@@ -64,7 +64,7 @@ def test_an_axis_points_at_its_point() -> None:
 def test_a_table_has_its_rows_and_is_linear_on_a_line() -> None:
     rng = np.random.default_rng(1)
     positions, turns = rng.normal(size=(30, 3)), rng.normal(size=(30, 3))
-    table = TurnTable(positions, turns)
+    table = OrientationTable(positions, turns)
     assert table.turns_rad(positions)[:, 0] == pytest.approx(turns)
     anywhere = table.turns_rad(rng.normal(size=(500, 3)) * 5.0)
     assert (anywhere <= turns.max(axis=0)).all()
@@ -74,14 +74,14 @@ def test_a_table_has_its_rows_and_is_linear_on_a_line() -> None:
         np.outer(values, axis) for values, axis in ((knots, [1, 0, 0]), (height, [0, 0, 1]))
     )
     between = np.linspace(0.0, 4.0, 9)
-    found = TurnTable(on_x, about_z).turns_rad(np.outer(between, [1, 0, 0]))[:, 0, 2]
+    found = OrientationTable(on_x, about_z).turns_rad(np.outer(between, [1, 0, 0]))[:, 0, 2]
     assert found == pytest.approx(np.interp(between, knots, height))
 
 
 def test_each_pose_of_a_list_keeps_its_orientations() -> None:
     positions = np.array([[0, 0, 1], [2, 0, 1], [0, 0, 1]], dtype=float)
     turns = np.array([[0.1, 0, 0], [0.2, 0, 0], [0.3, 0, 0]])
-    law = EachPose.of(positions, turns)
+    law = ListedOrientations.of(positions, turns)
     at = law.turns_rad(positions[:2])[:, :, 0]
     assert sorted(at[0]) == [0.1, 0.3]
     assert list(at[1]) == [0.2, 0.2]
@@ -128,7 +128,7 @@ def test_a_free_orientation_is_as_good_as_brute_force(seed: int, study_of: Study
     study = study_of(free)
     assert study.workspace is not None
     law = study.workspace.orientations.law
-    assert isinstance(law, BestTurns)
+    assert isinstance(law, BestOrientations)
     positions = rng.uniform([-2, -2, 1], [2, 2, 4], (12, 3))
     low, high = law.range_rad
     grid = np.stack(np.meshgrid(*np.linspace(low[:2], high[:2], 41).T), axis=-1).reshape(-1, 2)
@@ -153,7 +153,7 @@ def test_what_a_free_orientation_costs_between(
     study = study_of(f"{box}\n  {free}")
     assert study.workspace is not None
     law = study.workspace.orientations.law
-    assert isinstance(law, BestTurns)
+    assert isinstance(law, BestOrientations)
     positions = np.random.default_rng(0).uniform(
         [-half_m, -half_m, 1], [half_m, half_m, 4], (90, 3)
     )
@@ -181,7 +181,7 @@ def test_a_long_list_is_free_between_some_of_its_poses(study_of: StudyOf) -> Non
     study = study_of(free, list="x_m,y_m,z_m\n" + rows)
     assert study.workspace is not None
     law = study.workspace.orientations.law
-    assert isinstance(law, BestTurns)
+    assert isinstance(law, BestOrientations)
     assert len(law.table.positions_m) <= 256
     assert "at 64 others" in law.words
     assert len(np.concatenate([*study.workspace.places()])) == 900

@@ -15,7 +15,7 @@ from pairs.reference import Pose, solve
 from pairs.scenario import lines_of, problem_of
 from pairs.table import analysed, study_in
 
-from designer.analysis.sensitivities import with_density
+from designer.analysis.sensitivity import with_density
 from designer.analysis.uncertainty import Draws
 from designer.model.cable import Attached, Cable
 from designer.model.load_case import Ice, LoadCase, Wind
@@ -108,8 +108,8 @@ def test_ropes_of_the_catalogue_carry_it_and_keep_their_own_mass(
     longest = rope.verification.longest_m.sum()
     assert rope.total_mass_kg == pytest.approx(size["linear_mass"] * longest, rel=1e-9)
     assert rope.figures.cost == pytest.approx(size["price_per_m"] * longest, rel=1e-9)
-    assert analysis.carries is not None
-    slope = analysis.carries.sensitivities.of("linear_mass")
+    assert analysis.sensitivity is not None
+    slope = analysis.sensitivity.sensitivities.of("linear_mass")
     assert slope.value == pytest.approx(size["linear_mass"])
     assert slope.elasticity == pytest.approx(
         slope.derivative * slope.value / rope.sampled.utilisation

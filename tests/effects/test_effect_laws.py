@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from designer.analysis.sensitivities import payload_scaled
+from designer.analysis.sensitivity import payload_scaled
 from designer.diagnosis.problem import readings_of as foretold
 from designer.effects.effect import Effect, Readings, frame_size_m
 from designer.effects.registry import SHIPPED

@@ -14,8 +14,7 @@ from report_parts import tree
 
 from designer.analysis.analyse import Analysis, analyse
 from designer.analysis.pose import analyse_pose
-from designer.analysis.result_json import result_dict
-from designer.analysis.selection_json import selection_dict
+from designer.analysis.result_json import result_dict, selection_dict
 from designer.effects.effect import Effect, Parameter, Size, Values
 from designer.effects.load import guarded
 from designer.effects.registry import SHIPPED, KnownEffects

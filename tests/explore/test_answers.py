@@ -1,4 +1,4 @@
-"""What the window shows is what the commands print and the report says."""
+"""What the window shows is what the commands print and the report says; and two states compared."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ from designer.analysis.analyse import Analysis, analyse
 from designer.analysis.pose import analyse_pose
 from designer.cli.commands import main
 from designer.explore.answers import (
+    Pin,
+    compare,
     full_ropes,
     map_answer,
     pose_answer,
@@ -421,3 +423,79 @@ def test_effects_act_as_in_the_report(tmp_path: Path, no_plugins: Plugins, yard:
 def test_words_for_every_category() -> None:
     assert category_labels("governing", 3) == {1: "cable 1", 2: "cable 2", 3: "cable 3"}
     assert set(category_labels("verdict", 3)) == {int(one) for one in Verdict}
+
+
+def pin_of(session: Session, **how: Any) -> Pin:
+    question = session.question()
+    assert question is not None
+    parts = {"worst": worst_answer(question), "ropes": quick_ropes(question)} | how
+    return Pin(question, session.fields(), pose=pose_answer(question), **parts)
+
+
+@pytest.fixture
+def few(yard: Session) -> Session:
+    yard.edit("workspace.samples", "200")
+    return yard
+
+
+@pytest.mark.slow
+def test_nothing_differs_from_itself(few: Session) -> None:
+    pin = pin_of(few)
+    found = compare(pin, pin_of(few))
+    assert (found.changes, found.gained, found.lost) == ((), (), ())
+    assert all(line.difference == 0.0 for line in found.figures)
+    assert found.is_like_with_like
+
+
+@pytest.mark.slow
+def test_a_heavier_load(few: Session) -> None:
+    few.choose(Rope(WIRE, "7/32 in"))
+    before = pin_of(few)
+    few.edit("robot.platform.mass", "0.4 t")
+    after = pin_of(few)
+    found = compare(before, after)
+    changed = {one.title: (one.before, one.after) for one in found.changes}
+    assert changed["Platform with payload"] == ("180 kg", "0.4 t")
+    assert changed["Best rope"][0] == f"7/32 in of {WIRE}"
+    lines = {one.title: one for one in found.figures}
+    worse = ["Diameter needed here", "Utilisation at worst", "Diameter needed at worst"]
+    assert all(lines[title].difference > 0.0 for title in worse)
+    assert "Mass of all cables, best rope" in lines
+    in_unit = {
+        "Diameter needed here": ("diameter_m", 1e3),
+        "Largest tension here": ("max_tension_N", 1e-3),
+        "Utilisation here": ("utilisation", 100.0),
+        "Stiffness here": ("stiffness_N_per_m", 1e-3),
+    }
+    for title, (figure, scale) in in_unit.items():
+        gain = getattr(after.pose, figure) - getattr(before.pose, figure)
+        assert lines[title].difference == pytest.approx(scale * gain)
+    assert Rope(WIRE, "7/32 in") in found.lost
+    assert found.gained == ()
+
+
+@pytest.mark.slow
+def test_a_full_selection_and_a_quick_one_are_told_apart(few: Session) -> None:
+    question = few.question()
+    assert question is not None
+    found = compare(pin_of(few), pin_of(few, ropes=full_ropes(question)))
+    assert not found.is_like_with_like
+    unknown = compare(pin_of(few, ropes=None, worst=None), pin_of(few))
+    assert {one.title.split()[-1] for one in unknown.figures} == {"here"}
+
+
+def test_the_map_against_another_state(few: Session) -> None:
+    before = few.question()
+    few.edit("robot.platform.mass", "0.4 t")
+    few.edit("workspace.region.inset", "4 m")  # other positions
+    question = few.question()
+    assert question is not None
+    found = map_answer(question, against=before)
+    assert before is not None
+    assert np.all(found.difference("diameter") > 0.0)  # type: ignore[operator]
+    governing = found.difference("governing")
+    assert governing is not None
+    assert set(np.unique(governing)) <= {0.0, 1.0}
+    assert map_answer(question).difference("diameter") is None
+    same = map_answer(question, against=question)
+    assert np.all(same.difference("governing") == 0.0)

@@ -14,7 +14,7 @@ import pytest
 from designer.analysis.analyse import analyse
 from designer.errors import DesignerError, InputError, OutputError
 from designer.explore.answers import map_answer, pose_answer
-from designer.explore.export import COLUMNS, What, export, map_columns
+from designer.explore.export import COLUMNS, ExportContent, export, map_columns
 from designer.explore.question import Question, Rope
 from designer.explore.session import Session
 from designer.exports.formats import FORMATS
@@ -125,7 +125,7 @@ def test_formats_are_those_of_the_command(
 
 
 def test_every_format_of_the_command_can_be_exported() -> None:
-    assert set(FORMATS) | {"report", "lengths"} <= set(get_args(What))
+    assert set(FORMATS) | {"report", "lengths"} <= set(get_args(ExportContent))
 
 
 def test_lengths_at_poses_of_a_table(question: Question, tmp_path: Path) -> None:

@@ -67,7 +67,7 @@ def test_the_pose_is_answered_in_the_middle_of_longer_work(
 ) -> None:
     long = asker.ask("worst", yard.question())
     assert work.began.wait(10.0)
-    found = asker.end_of(asker.ask("here", yard.question()))
+    found = asker.end_of(asker.ask("pose", yard.question()))
     assert found.status == "done"
     assert isinstance(found.answer, PoseAnswer)
     work.may_end.set()
@@ -78,7 +78,7 @@ def test_the_pose_is_answered_in_the_middle_of_longer_work(
 def test_work_for_an_older_study_is_given_up(work: Work, asker: Any, yard: Session) -> None:
     long = asker.ask("worst", yard.question())
     assert work.began.wait(10.0)
-    asker.ask("here", other(yard))
+    asker.ask("pose", other(yard))
     assert asker.end_of(long).status == "cancelled"
 
 
@@ -103,7 +103,7 @@ def test_of_many_that_wait_the_newest_is_answered(work: Work, asker: Any, yard: 
         numbers = []
         for place in places:
             yard.move(place)
-            numbers.append(asker.ask("here", yard.question()))
+            numbers.append(asker.ask("pose", yard.question()))
     ends = [asker.end_of(number) for number in numbers]
     assert [end.status for end in ends] == ["cancelled"] * 4 + ["done"]
     assert np.allclose(ends[-1].question.place[:3], places[-1])
@@ -123,7 +123,7 @@ def test_each_request_comes_to_one_end(asker: Any, yard: Session) -> None:
     rng = np.random.default_rng(7)
     numbers = []
     for _ in range(60):
-        kind = rng.choice(["here", "coarse", "fine", "ropes", "worst"])
+        kind = rng.choice(["pose", "coarse", "fine", "ropes", "worst"])
         if rng.random() < 0.2:
             yard.edit("robot.platform.mass", f"{180 + rng.random():.6f} kg")
         numbers.append(asker.ask(str(kind), yard.question()))
@@ -135,16 +135,16 @@ def test_each_request_comes_to_one_end(asker: Any, yard: Session) -> None:
     ends = [one.number for one in asker.seen if one.is_end]
     assert sorted(ends) == numbers
     last = {one.kind: one for one in asker.seen if one.is_end}
-    assert all(one.status == "done" for one in last.values() if one.kind == "here")
+    assert all(one.status == "done" for one in last.values() if one.kind == "pose")
 
 
 def test_a_failure_is_told_and_the_next_request_answered(asker: Any, yard: Session) -> None:
     yard.choose(Rope("unirope-7x19-galvanised", "1 parsec"))
-    end = asker.end_of(asker.ask("here", yard.question()))
+    end = asker.end_of(asker.ask("pose", yard.question()))
     assert end.status == "failed"
     assert end.text == "the grade unirope-7x19-galvanised has no size 1 parsec"
     yard.undo()
-    assert asker.end_of(asker.ask("here", yard.question())).status == "done"
+    assert asker.end_of(asker.ask("pose", yard.question())).status == "done"
 
 
 def test_an_unexpected_failure_is_told_too(
@@ -169,7 +169,7 @@ def test_too_few_cables_are_told(asker: Any, tmp_path: Path, no_plugins: Plugins
         encoding="utf-8",
     )
     session = Session.open(study, no_plugins)
-    end = asker.end_of(asker.ask("here", session.question()))
+    end = asker.end_of(asker.ask("pose", session.question()))
     assert end.status == "failed"
     assert "fewer than its 6 degrees of freedom" in end.text
 
@@ -201,14 +201,14 @@ def test_an_effect_of_a_plugin_that_fails_is_told(asker: Any, tmp_path: Path, si
     study.write_text(yard.text + "effects: {frail: {amount: 1}}\n", encoding="utf-8")
     session = Session.open(study, plugins)
     assert session.faults == ()
-    assert asker.end_of(asker.ask("here", session.question())).status == "done"
+    assert asker.end_of(asker.ask("pose", session.question())).status == "done"
     session.edit("effects.frail.amount", "2")
-    end = asker.end_of(asker.ask("here", session.question()))
+    end = asker.end_of(asker.ask("pose", session.question()))
     assert end.status == "failed"
     assert "frail" in end.text
     assert "too much" in end.text
     session.undo()
-    assert asker.end_of(asker.ask("here", session.question())).status == "done"
+    assert asker.end_of(asker.ask("pose", session.question())).status == "done"
 
 
 def test_closed_in_the_middle_of_work(work: Work, yard: Session) -> None:

@@ -267,3 +267,12 @@ def test_damaged_files(tmp_path) -> None:
         except InputError as error:
             assert len(str(error).splitlines()) == 1
     assert 20 < read < 430
+
+
+@pytest.mark.parametrize("options", [("--cables", "other.xml"), ("--cable-set", "few")])
+def test_options_of_models_in_two_files_are_refused_for_others(run, tmp_path, options) -> None:
+    (tmp_path / "rig.wcrfx").write_text(wirex("", "", ""), encoding="utf-8")
+    status, _, err = run("import", "rig.wcrfx", *options)
+    expected = "no --cables, --bodies or --cable-set"
+    assert (status, err) == (2, f"rig.wcrfx: is no model of CASPR (expected {expected})\n")
+    assert not (tmp_path / "rig.yaml").exists()

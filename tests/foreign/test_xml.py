@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from designer.documents.opened import LARGEST_FILE_BYTES
-from designer.documents.xml import DEEPEST_NESTING, MOST_ELEMENTS, read_xml
+from designer.documents.xml import DEEPEST_NESTING, MAX_ELEMENTS, read_xml
 from designer.errors import InputError
 
 BOMB = (
@@ -26,7 +26,7 @@ SECRET = '<!DOCTYPE a [<!ENTITY b SYSTEM "file:///etc/hostname">]><a>&b;</a>'
         (BOMB.encode(), "declares entities"),
         (SECRET.encode(), "declares entities"),
         (b"<a>" * (DEEPEST_NESTING + 1), "nested more than"),
-        (b"<a>" + b"<b/>" * MOST_ELEMENTS + b"</a>", "more than"),
+        (b"<a>" + b"<b/>" * MAX_ELEMENTS + b"</a>", "more than"),
         (b"<a>" + b"x" * LARGEST_FILE_BYTES + b"</a>", "the file has 1 MB"),
     ],
 )

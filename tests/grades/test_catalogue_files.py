@@ -274,7 +274,7 @@ def test_loops_of_links_and_pipes_do_not_trap_the_reader(tmp_path):
 
 
 def test_a_folder_with_thousands_of_files_is_one_fault(tmp_path):
-    for number in range(registry.MOST_FILES + 1):
+    for number in range(registry.MAX_FILES + 1):
         (tmp_path / f"{number}.yaml").touch()
 
     found, faults = read_grades(tmp_path)
@@ -284,7 +284,7 @@ def test_a_folder_with_thousands_of_files_is_one_fault(tmp_path):
 
 
 def test_listing_stops_at_the_limit_of_entries(tmp_path, monkeypatch):
-    monkeypatch.setattr(registry, "MOST_ENTRIES", 5)
+    monkeypatch.setattr(registry, "MAX_ENTRIES", 5)
     for number in range(6):
         (tmp_path / f"{number}.txt").touch()
 

@@ -4,7 +4,7 @@ import pytest
 from grade_samples import GRADE_TEXT, write_grade
 
 from designer.grades.listing import (
-    Wanted,
+    GradeFilter,
     facts,
     split_nominal,
     summary,
@@ -45,14 +45,14 @@ def test_checking_a_folder_without_grades_does_not_pass(tmp_path):
 @pytest.mark.parametrize(
     ("wanted", "some", "none"),
     [
-        (Wanted(construction="7X19"), "lg-7x19-wsc-galvanised-2070", "unirope-19x7-eips"),
-        (Wanted(construction="9x7"), None, "unirope-19x7-eips"),
-        (Wanted(construction="6x36ws"), "unirope-6x36-iwrc-1960", "unirope-8x36-iwrc-1960"),
-        (Wanted(construction="braid"), "yale-ultrex-hmpe", "superline-hmpe"),
-        (Wanted(material="hmpe"), "superline-hmpe", "yale-pobon-pbo"),
-        (Wanted(material="steel"), "gost-6x19s-iwrc-1960", "unirope-7x19-stainless-302-304"),
-        (Wanted(maker="robline"), "robline-rapallo-polyester", "yale-yalon-nylon"),
-        (Wanted(diameter_m=0.112), "superline-hmpe", "unirope-7x19-galvanised"),
+        (GradeFilter(construction="7X19"), "lg-7x19-wsc-galvanised-2070", "unirope-19x7-eips"),
+        (GradeFilter(construction="9x7"), None, "unirope-19x7-eips"),
+        (GradeFilter(construction="6x36ws"), "unirope-6x36-iwrc-1960", "unirope-8x36-iwrc-1960"),
+        (GradeFilter(construction="braid"), "yale-ultrex-hmpe", "superline-hmpe"),
+        (GradeFilter(material="hmpe"), "superline-hmpe", "yale-pobon-pbo"),
+        (GradeFilter(material="steel"), "gost-6x19s-iwrc-1960", "unirope-7x19-stainless-302-304"),
+        (GradeFilter(maker="robline"), "robline-rapallo-polyester", "yale-yalon-nylon"),
+        (GradeFilter(diameter_m=0.112), "superline-hmpe", "unirope-7x19-galvanised"),
     ],
 )
 def test_the_list_can_be_narrowed(wanted, some, none):
@@ -63,7 +63,7 @@ def test_the_list_can_be_narrowed(wanted, some, none):
 
 
 def test_a_wanted_diameter_keeps_the_sizes_that_have_it():
-    grades = Wanted(construction="7x19", diameter_m=0.0032).among(load_catalogue().grades)
+    grades = GradeFilter(construction="7x19", diameter_m=0.0032).among(load_catalogue().grades)
 
     sizes = {grade.id: [size.id for size in grade.sizes] for grade in grades}
     assert sizes == {

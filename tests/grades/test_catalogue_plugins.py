@@ -131,7 +131,7 @@ def test_an_entry_point_to_what_a_module_has_not_is_reported(site):
 def test_a_folder_of_thousands_of_files_is_one_line_and_none_is_read(site, tmp_path, monkeypatch):
     ropes = tmp_path / "ropes"
     ropes.mkdir()
-    for number in range(registry.MOST_FILES + 500):
+    for number in range(registry.MAX_FILES + 500):
         (ropes / f"{number}.yaml").touch()
     install_plugin(site, "acme-many", _folder_hook(ropes))
     read = []

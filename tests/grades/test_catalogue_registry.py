@@ -26,12 +26,12 @@ def test_a_fault_in_the_user_folder_is_a_problem_not_an_error(user_folder):
 
 
 def test_many_problems_of_one_source_are_cut_short(user_folder):
-    for number in range(registry.MOST_PROBLEMS_OF_A_SOURCE + 5):
+    for number in range(registry.MAX_PROBLEMS_OF_A_SOURCE + 5):
         write_grade(user_folder / f"{number}.yaml", "id: x")
 
     problems = load_catalogue().problems
 
-    assert len(problems) == registry.MOST_PROBLEMS_OF_A_SOURCE + 1
+    assert len(problems) == registry.MAX_PROBLEMS_OF_A_SOURCE + 1
     assert problems[-1].endswith("more problems of this kind")
 
 

@@ -17,7 +17,7 @@ from designer.analysis.comparison import ComparisonLine
 from designer.cli.commands import main
 from designer.errors import DesignerError
 from designer.optimum.optimise import Optimum
-from designer.report.optimum import headline, optimum_report, trust_lines, write_optimum
+from designer.optimum.report import headline, optimum_report, trust_lines, write_optimum
 
 
 @pytest.mark.slow

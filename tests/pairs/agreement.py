@@ -301,14 +301,14 @@ def with_choices(text: Mapping[str, Any], analysis: Analysis) -> dict[str, Any]:
     if free is None or workspace is None:
         return dict(text)
 
-    def turn_of(position: np.ndarray) -> np.ndarray:
+    def rotation_vector_of(position: np.ndarray) -> np.ndarray:
         turn = workspace.space.places(position[None])[0, 3:]
         ends = np.array([free.get(name, [0.0, 0.0]) for name in ("rx", "ry", "rz")])
         assert (turn >= ends[:, 0] - 1e-12).all()
         assert (turn <= ends[:, 1] + 1e-12).all()
         return turn
 
-    return {**text, "turn_of": turn_of}
+    return {**text, "turn_of": rotation_vector_of}
 
 
 def _reactions(text, ropes, analysis: Analysis) -> Iterator[str]:

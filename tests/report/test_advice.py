@@ -366,7 +366,7 @@ def test_no_begins_with_why_it_is_no(solve: Solve) -> None:
     assert "accelerate less" in given
     assert "allow more sag" not in given
     assert "more mass" not in given  # the inertia force would grow with it
-    (adrift,) = analysis.findings.adrift
+    (loss,) = analysis.findings.equilibrium_losses
     for remedy in (
         {"load_cases": [{"name": "flight", "acceleration": 0.5}]},
         {
@@ -379,8 +379,8 @@ def test_no_begins_with_why_it_is_no(solve: Solve) -> None:
             ]
         },
     ):
-        after = solve(edited(yaml.safe_load(text), remedy)).findings.adrift
-        assert sum(each.share for each in after) < adrift.share
+        after = solve(edited(yaml.safe_load(text), remedy)).findings.equilibrium_losses
+        assert sum(each.share for each in after) < loss.share
 
 
 def test_failed_sag_comes_before_the_strength_of_the_rope(solve: Solve) -> None:

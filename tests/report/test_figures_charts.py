@@ -53,7 +53,7 @@ CHARTS: dict[str, Callable[[WorkspaceMaps], str | None]] = {
     "slice": slice_chart,
     "panels": slice_panels,
     "edge": edge_chart,
-    "served": lambda maps: served_chart(maps.served),
+    "served": lambda maps: served_chart(maps.coverage),
 }
 
 
@@ -160,11 +160,11 @@ class TestEdge:
 
 class TestServed:
     def test_served(self) -> None:
-        found = texts(served_chart(maps_of("served").served))
+        found = texts(served_chart(maps_of("served").coverage))
         assert {"serves all: 51.2 mm", "massless: 29.3 mm", "with sag", "massless"} <= found
 
     def test_partly(self) -> None:
-        served = maps_of("partly").served
+        served = maps_of("partly").coverage
         share = fmt.number(100.0 * served.unserved, 2)
         found = texts(served_chart(served))
         assert f"not served {share} %" in found
@@ -172,14 +172,14 @@ class TestServed:
 
     @pytest.mark.parametrize("kind", ["served", "partly"])
     def test_shares_are_of_all_poses(self, kind: str) -> None:
-        served = maps_of(kind).served
+        served = maps_of(kind).coverage
         for share in (served.share, served.massless_share):
             assert (np.diff(share) > 0.0).all()
             assert 0.0 < share[0] <= share[-1] <= 1.0
         assert served.share[-1] + served.unserved == pytest.approx(1.0)
 
     def test_where_neither_serves_all(self) -> None:
-        served = replace(maps_of("partly").served, massless_needed_m=np.nan)
+        served = replace(maps_of("partly").coverage, massless_needed_m=np.nan)
         nothing = np.empty(0)
         for one in (served, replace(served, diameter_m=nothing, share=nothing)):
             svg = served_chart(one)
@@ -187,7 +187,7 @@ class TestServed:
             assert "massless" in texts(svg)
 
     def test_all_left_out(self) -> None:
-        assert "every pose is left out" in texts(served_chart(maps_of("all_left_out").served))
+        assert "every pose is left out" in texts(served_chart(maps_of("all_left_out").coverage))
 
 
 class TestLoop:

@@ -11,9 +11,17 @@ from altered import altered
 from figures_cases import CASES, SIX, STEEL, THREE, inset, maps_of, pose_at, solved, study_of
 from report_parts import caption
 
-from designer.analysis.edge import edge_profile, first_failure_m
-from designer.analysis.field import RegionField, cable_curves_m, chords_m, field_at, largest_sag
-from designer.analysis.maps import as_built, workspace_maps
+from designer.analysis.maps import (
+    RegionField,
+    as_built,
+    cable_curves_m,
+    chords_m,
+    edge_profile,
+    field_at,
+    first_failure_m,
+    largest_sag,
+    workspace_maps,
+)
 from designer.analysis.pose import analyse_pose
 from designer.io.config import read_study
 from designer.model import polygon
@@ -278,7 +286,7 @@ class TestEdge:
 
 class TestServed:
     def test_all_is_served_by_the_optimum(self) -> None:
-        served = maps_of("served").served
+        served = maps_of("served").coverage
         assert served.share[-1] == served.massless_share[-1] == 1.0
         assert served.unserved == 0.0
         assert (np.diff(served.share) > 0.0).all()
@@ -291,17 +299,17 @@ class TestServed:
         assert analysis.workspace is not None
         fraction = analysis.workspace.census.fraction("no_finite_cable")
         assert 0.02 < fraction < 0.06
-        assert maps.served.unserved == pytest.approx(fraction)
-        assert maps.served.share[-1] == pytest.approx(1.0 - fraction)
-        assert np.isnan(maps.served.needed_m)
+        assert maps.coverage.unserved == pytest.approx(fraction)
+        assert maps.coverage.share[-1] == pytest.approx(1.0 - fraction)
+        assert np.isnan(maps.coverage.needed_m)
 
     def test_only_what_is_not_left_out_counts(self) -> None:
         analysis, maps = solved("exclude")
         assert analysis.workspace is not None
         census = analysis.workspace.census
-        assert maps.served.samples == census.samples - census.excluded
-        assert maps.served.share[-1] == 1.0
-        assert maps_of("all_left_out").served.samples == 0
+        assert maps.coverage.samples == census.samples - census.excluded
+        assert maps.coverage.share[-1] == 1.0
+        assert maps_of("all_left_out").coverage.samples == 0
 
 
 class TestMaps:

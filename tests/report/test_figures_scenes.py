@@ -20,8 +20,7 @@ import numpy as np
 import pytest
 from figures_cases import CASES, SIX, THREE, maps_of, pose_at, solved
 
-from designer.analysis.field import RegionField
-from designer.analysis.maps import WorkspaceMaps
+from designer.analysis.maps import RegionField, WorkspaceMaps
 from designer.analysis.pose import analyse_pose
 from designer.errors import MissingLibraryError
 from designer.model.region import Prism

@@ -9,13 +9,13 @@ import pytest
 from figures_cases import STEEL, THREE, maps_of, solved
 from report_parts import caption
 
-from designer.analysis.layers import chosen_sizes, layers_of
+from designer.analysis.maps import chosen_sizes, layers_of
 from designer.arrays import FloatArray
 from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.robot import Poses
 from designer.report.figures.scenes import colours, usable_scene
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX
-from designer.selection.usable import Usable, usable
+from designer.selection.result import SizeCoverage, usable
 from designer.sizing.newton import size_poses
 
 pytestmark = pytest.mark.slow
@@ -46,7 +46,7 @@ def steel_grade() -> Grade:
     )
 
 
-def usable_of(case: str) -> Usable:
+def usable_of(case: str) -> SizeCoverage:
     workspace = solved(case)[0].study.workspace
     assert workspace is not None
     grade = steel_grade()

@@ -14,7 +14,7 @@ from pairs.options import BASES
 from scipy.spatial.transform import Rotation
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.modes import PlatformModes, modes_of
+from designer.analysis.governing import PlatformModes, modes_of
 from designer.io.config import read_study
 from designer.report import format as fmt
 from designer.report.design.drawings import Drawings

@@ -10,7 +10,7 @@ from figures_cases import maps_of
 from report_parts import caption, pictures
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.maps import Served
+from designer.analysis.maps import CoverageCurve
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
 
@@ -56,9 +56,9 @@ def test_edge_says_where_the_region_and_where_all_cables_end() -> None:
 
 def test_a_region_that_no_cable_serves_promises_no_diameter() -> None:
     maps = maps_of("served")
-    text = caption("served", maps.served)
+    text = caption("served", maps.coverage)
     assert "serves nine poses of ten; the last tenth takes 51.2 mm." in text
-    none = Served(
+    none = CoverageCurve(
         diameter_m=np.empty(0),
         share=np.empty(0),
         massless_diameter_m=np.empty(0),
@@ -69,7 +69,7 @@ def test_a_region_that_no_cable_serves_promises_no_diameter() -> None:
         samples=10,
     )
     assert caption("served", none).endswith("configured family serves.")
-    half = replace(maps.served, share=0.5 * maps.served.share)
+    half = replace(maps.coverage, share=0.5 * maps.coverage.share)
     assert caption("served", half).endswith("configured family serves.")
 
 

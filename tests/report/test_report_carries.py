@@ -11,9 +11,8 @@ import pytest
 from report_parts import cells, said
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.carries import Carries
 from designer.analysis.result_json import result_dict
-from designer.analysis.sensitivities import sensitivities, with_payload
+from designer.analysis.sensitivity import SensitivityReport, sensitivities, with_payload
 from designer.documents.plain import json_text
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section as section_of
@@ -51,9 +50,9 @@ def windy(solve: Callable[[str], Analysis]) -> Analysis:
     return solve(CRANE + CASES)
 
 
-def of(found: Analysis) -> Carries:
-    assert found.carries is not None
-    return found.carries
+def of(found: Analysis) -> SensitivityReport:
+    assert found.sensitivity is not None
+    return found.sensitivity
 
 
 @pytest.mark.parametrize("name", ["found", "windy"])

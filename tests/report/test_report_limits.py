@@ -17,7 +17,8 @@ from designer.model.verdict import Requirement
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section as section_of
 from designer.selection.criteria import criteria_of
-from designer.selection.requirements import drum_of, evaluate, loads_of
+from designer.selection.reeving import drum_of
+from designer.selection.requirements import evaluate, loads_of
 from designer.statics.inverse import solve_sagging
 from designer.statics.modes import (
     cable_frequencies_Hz,
@@ -139,7 +140,7 @@ def test_modes_stand_in_file_and_report(found: Analysis) -> None:
     governing = found.governing
     assert governing is not None
     density = governing.case.loaded.moving_density_kg_per_m
-    at = governing.alone
+    at = governing.equilibrium
     modes = platform_modes(at, found.study.robot.platform, density)
     expected = np.array([mode.frequency_Hz for mode in modes])
     assert [row["frequency_Hz"] for row in result["modes"]] == pytest.approx(expected.tolist())

@@ -13,7 +13,7 @@ from designer.arrays import FloatArray
 from designer.explore.answers import map_grids
 from designer.model.region import Border, Prism, Region
 from designer.model.space import Orientations, Space
-from designer.proof.encloser import why_not
+from designer.proof.encloser import unsupported_reason
 from designer.report.design.report import design_report
 from designer.report.render import render_html
 
@@ -59,7 +59,7 @@ LINE = Segment(np.array([[8.0, 5.0, 1.0], [22.0, 7.0, 8.0]]))
 
 
 def test_what_a_region_does_not_say_is_declined(fast_robot: designer.Robot) -> None:
-    assert "not covered by boxes" in why_not(fast_robot, Space(LINE, Orientations()))
+    assert "not covered by boxes" in unsupported_reason(fast_robot, Space(LINE, Orientations()))
     assert not LINE.has_sides
     assert not LINE.outward(LINE.ends_m[0]).any()
     assert LINE.section_m() is None
@@ -72,7 +72,7 @@ def test_what_a_region_does_not_say_is_declined(fast_robot: designer.Robot) -> N
 
 def test_a_box_has_all_of_it(fast_robot: designer.Robot) -> None:
     box = Prism.box((0.0, 4.0), (0.0, 3.0), (1.0, 2.0))
-    assert why_not(fast_robot, Space(box, Orientations())) == ""
+    assert unsupported_reason(fast_robot, Space(box, Orientations())) == ""
     assert box.outward(np.array([4.0, 3.0, 1.5])) == pytest.approx([1.0, 1.0, 0.0])
     assert box.grown(0.5).bounds_m == pytest.approx(np.array([[-0.5, -0.5, 1], [4.5, 3.5, 2]]))
     grids = map_grids(box, 0.25, fine=True)

@@ -14,13 +14,13 @@ from report_cases import SIX
 from report_parts import facts, page, pictures, said, statements, tables
 
 from designer.analysis.analyse import Analysis
+from designer.analysis.maps import SectionMap
 from designer.analysis.result_json import result_dict
-from designer.analysis.section import SectionMap
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import design_report, section
 from designer.report.figures.sections import section_map
 from designer.report.render import render_html
-from designer.selection.qualities import Qualities
+from designer.selection.assignment import Qualities
 
 pytestmark = pytest.mark.slow
 

@@ -48,7 +48,7 @@ def shown(found: UncertaintyAnalysis | None, *, draws: bool = True, **more: Any)
     study = SimpleNamespace(uncertainty=more.get("asked"))
     assignment = SimpleNamespace(rope=more.get("chosen"))
     analysis: Any = SimpleNamespace(
-        uncertainty=found, study=study, findings=None, assignment=assignment, carries=None
+        uncertainty=found, study=study, findings=None, assignment=assignment, sensitivity=None
     )
     return section(Drawings(analysis, draws), "uncertainty")
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from designer.selection.groups.balance import _least_moment_m2
-from designer.selection.groups.master import Master
+from designer.selection.groups import Master
+from designer.selection.refutation import _least_moment_m2
 
 
 def moment_of_catenary(X: float, D: float, c: float) -> float:

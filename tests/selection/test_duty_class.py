@@ -11,8 +11,7 @@ from designer.errors import InputError
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.model.load_case import LoadCase
-from designer.selection.requirements import sheave_ratio_of
-from designer.selection.rope_class import least_sheave_ratio
+from designer.selection.reeving import least_sheave_ratio, sheave_ratio_of
 from designer.study import Selection
 
 GRADES = {grade.id: grade for grade in load_catalogue(with_plugins=False).grades}

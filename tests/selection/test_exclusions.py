@@ -17,8 +17,7 @@ from report_parts import said
 from rich.text import Text
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.result_json import result_dict
-from designer.analysis.selection_json import candidates_csv
+from designer.analysis.result_json import candidates_csv, result_dict
 from designer.cli.tables import summary_rows
 from designer.explore.answers import ropes_of
 from designer.io.config.reader import read_study

@@ -13,7 +13,7 @@ from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import PointList, Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
-from designer.selection.family_need import family_need, most_needed
+from designer.selection.family import family_need, governing_need
 from designer.statics.cable_loss import settle
 from designer.statics.inverse import solve_sagging
 from designer.workspace.sweep import map_workspace
@@ -72,5 +72,5 @@ def test_a_case_that_nothing_holds_governs() -> None:
     none = family_need(AsBuilt(ROBOT), above, FAMILY, LoadCase("above"))
     some = family_need(AsBuilt(ROBOT), POINTS, FAMILY, LoadCase("static"))
     assert not none.is_held
-    assert most_needed([some, none]) is none
-    assert most_needed([]) is None
+    assert governing_need([some, none]) is none
+    assert governing_need([]) is None

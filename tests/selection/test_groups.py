@@ -19,11 +19,15 @@ from designer.model.region import PointList, Prism
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate, priced, undominated
-from designer.selection.groups.balance import balance_at
-from designer.selection.groups.blocks import block_by_trial, block_by_weight, is_monotone
-from designer.selection.groups.choose import choose_groups, choose_groups_of
-from designer.selection.groups.result import GroupChoice
-from designer.selection.groups.trials import Trials, verify_groups
+from designer.selection.groups import GroupChoice, choose_groups, choose_groups_of
+from designer.selection.refutation import (
+    Trials,
+    balance_at,
+    block_by_trial,
+    block_by_weight,
+    is_monotone,
+    verify_groups,
+)
 from designer.selection.select import select
 from designer.statics.inverse import solve_sagging
 from designer.study import CableGroup, Selection
@@ -175,8 +179,8 @@ def test_groups_save_mass_where_loads_differ(case) -> None:
 def test_without_its_shortcuts_the_search_finds_the_same(case, monkeypatch) -> None:
     """Neither balance nor weight: every lighter assignment is solved."""
     robot, workspace = case
-    monkeypatch.setattr("designer.selection.groups.choose.is_sound", lambda *_: False)
-    monkeypatch.setattr("designer.selection.groups.choose.is_monotone", lambda *_: False)
+    monkeypatch.setattr("designer.selection.groups.is_sound", lambda *_: False)
+    monkeypatch.setattr("designer.selection.groups.is_monotone", lambda *_: False)
     groups, products = groups_of(robot), candidates_of(rope(EIGHT[robot.n_cables]))
     choice = choose_groups(robot, workspace, groups, products)
     check_against_hand(choice, lightest_by_hand(robot, workspace, groups, products, 3))
@@ -193,7 +197,7 @@ def test_the_argument_on_weight_cuts_whole_blocks(fast_robot) -> None:
 
 def test_balance_alone_finds_the_same(fast_robot, monkeypatch) -> None:
     robot, workspace = three(fast_robot)
-    monkeypatch.setattr("designer.selection.groups.choose.is_monotone", lambda *_: False)
+    monkeypatch.setattr("designer.selection.groups.is_monotone", lambda *_: False)
     groups, products = groups_of(robot), candidates_of(rope(EIGHT[3]))
     choice = choose_groups(robot, workspace, groups, products)
     assert choice.by_balance
@@ -437,5 +441,5 @@ def test_verification_that_fails_says_where(fast_robot) -> None:
 
 
 def test_the_optimiser_is_loaded_only_when_it_is_needed() -> None:
-    code = "import sys, designer.selection.groups.choose; sys.exit('cvxpy' in sys.modules)"
+    code = "import sys, designer.selection.groups; sys.exit('cvxpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -12,8 +12,7 @@ from designer.grades.grade import Grade
 from designer.model.cable import Offer, PriceList
 from designer.model.region import Prism
 from designer.model.workspace import Workspace
-from designer.selection.candidate import Candidate, common_currency, priced
-from designer.selection.prices import BORROWED, with_prices
+from designer.selection.candidate import BORROWED, Candidate, common_currency, priced, with_prices
 from designer.selection.select import best_product, select
 from designer.study import Selection
 

@@ -10,7 +10,7 @@ from ropes import rope
 from designer.model.region import Prism
 from designer.model.winches import Winches
 from designer.model.workspace import Workspace
-from designer.selection.efficiency import Allowance, bending_efficiency
+from designer.selection.reeving import Allowance, bending_efficiency
 from designer.selection.select import select
 from designer.study import Selection
 

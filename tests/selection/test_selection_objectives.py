@@ -12,15 +12,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from ropes import rope
 
-from designer.analysis.selection_json import selection_dict
+from designer.analysis.result_json import selection_dict
 from designer.arrays import frozen_array
 from designer.grades.grade import Grade, Units
 from designer.model.cable import Cable, Preference
 from designer.model.region import PointList, Prism
 from designer.model.workspace import Workspace
-from designer.selection.candidate import Candidate, common_currency
+from designer.selection.candidate import MEANINGS, Candidate, CandidateFigures, common_currency
 from designer.selection.compare import dominator_of, is_undominated
-from designer.selection.objectives import MEANINGS, CandidateFigures
 from designer.selection.select import best_product, select
 from designer.study import Objective, Selection
 from designer.workspace.stiffness import smallest_stiffness_N_per_m

@@ -15,8 +15,8 @@ from designer.model.robot import Poses
 from designer.model.space import Orientations
 from designer.model.workspace import Workspace
 from designer.resources import example_file
+from designer.selection.result import usable
 from designer.selection.select import select
-from designer.selection.usable import usable
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
 from designer.study import Selection

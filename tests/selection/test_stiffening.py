@@ -22,7 +22,7 @@ from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.selection.candidate import candidates_of, undominated
 from designer.selection.cases import converge_stiffness
-from designer.selection.groups.choose import MOST_PROPOSALS, choose_groups_of
+from designer.selection.groups import MOST_PROPOSALS, choose_groups_of
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.statics.cable_loss import settle

@@ -138,7 +138,7 @@ def test_the_inside_of_a_box_is_searched() -> None:
 def test_a_list_has_nothing_between() -> None:
     robot = Robot(np.array([[0, 0, 9.0], [9, 0, 9], [4, 8, 9]]), Platform(50.0))
     listed = LoadCase("list", wrench_set=WrenchSet(np.eye(6)[:3]))
-    assert not any(one.is_turned for one in listed.on(robot, CABLE))
+    assert not any(one.is_direction_searched for one in listed.on(robot, CABLE))
     with pytest.raises(ValueError, match="1 to 64 wrenches"):
         WrenchSet(np.zeros((65, 6)))
     with pytest.raises(ValueError, match="exclude each other"):

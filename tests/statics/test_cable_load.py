@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from twins.loaded import Acting, Twin, acting, held, integrated_end_m, rest, tensions_N
 
-from designer.analysis.field import cable_curves_m
+from designer.analysis.maps import cable_curves_m
 from designer.arrays import FloatArray
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2 as G
 from designer.model.cable import Cable

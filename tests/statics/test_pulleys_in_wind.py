@@ -10,7 +10,7 @@ from scipy.optimize import nnls
 from scipy.spatial.transform import Rotation
 from twins.loaded import Twin, acting, held_over_pulleys, tensions_N
 
-from designer.analysis.field import cable_curves_m
+from designer.analysis.maps import cable_curves_m
 from designer.arrays import FloatArray
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded, Wind

@@ -10,8 +10,8 @@ from sweep_cases import STUDY, SWEEP, written
 
 from designer.documents.document import Node, path_keys, path_text
 from designer.errors import InputError
-from designer.report.sweep import unit_of
 from designer.sweeps.plan import Range, ValueList, columns_of, read_sweep
+from designer.sweeps.report import unit_of
 
 MASS = Range(("robot", "platform", "mass"), 100.0, 300.0, "kg", 5)
 GRADE = ValueList(("cable", "grade"), (Node(1, "a", True), Node(1, "b", True)))

@@ -14,7 +14,7 @@ from sweep_cases import SWEEP, written
 from test_sweep_run import swept
 
 from designer.report.document import Report
-from designer.report.sweep import NOT_EVALUATED, pareto_front, sweep_report
+from designer.sweeps.report import NOT_EVALUATED, pareto_front, sweep_report
 from designer.sweeps.run import read_store
 
 

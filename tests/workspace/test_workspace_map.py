@@ -29,7 +29,6 @@ from designer.workspace.demand import diameter_demand, is_left_out, massless_dem
 from designer.workspace.refine import Pool, Worst, refine, refine_each
 from designer.workspace.sweep import (
     HangingCables,
-    look_at,
     map_workspace,
     open_sweep,
     survey_hanging,
@@ -534,7 +533,7 @@ def test_samples_are_counted_and_the_worst_is_told() -> None:
     ratio, lowest = statics.length_over_chord, statics.lowest_m
     floor_m = float(np.median(lowest.min(axis=1)))
     counts = statics.is_solved & (np.arange(200) % 3 > 0)
-    whole = look_at(HangingCables(), places, statics, counts, floor_m)
+    whole = HangingCables().with_samples(places, statics, counts, floor_m)
     assert whole.samples == counts.sum()
     assert whole.below_floor is not None
     below = lowest[counts].min(axis=1)
@@ -543,7 +542,7 @@ def test_samples_are_counted_and_the_worst_is_told() -> None:
     at = int(np.flatnonzero((places == whole.below_floor.place).all(axis=1))[0])
     assert lowest[at, whole.below_floor.cable - 1] == below.min()
     assert (whole.long is not None) == (ratio[counts] > LONG).any()
-    assert look_at(HangingCables(), places, statics, counts, None).below_floor is None
+    assert HangingCables().with_samples(places, statics, counts, None).below_floor is None
 
 
 @pytest.mark.parametrize("samples", [300])

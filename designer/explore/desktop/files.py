@@ -20,7 +20,7 @@ from designer.report import format as fmt
 from designer.resources import example_file
 
 if TYPE_CHECKING:
-    from designer.explore.export import OptimisedStudy, What, Written
+    from designer.explore.export import ExportContent, OptimisedStudy, Written
     from designer.explore.session import Session
     from designer.plugins import Plugins
 
@@ -38,7 +38,6 @@ class Settings:
 
     @property
     def theme(self) -> str:
-        """One of `widgets.THEME_CHOICES`."""
         return str(self._store.value("theme", "system"))
 
     @theme.setter
@@ -62,7 +61,6 @@ class Settings:
         return tuple(path for path in map(Path, names) if path.is_file())
 
     def remember(self, study: Path) -> None:
-        """Put a study in front of the recent ones."""
         path = study.resolve()
         earlier = [study_file for study_file in self.recent if study_file != path]
         names = [str(study_file) for study_file in [path, *earlier][:MAX_RECENT]]
@@ -83,7 +81,7 @@ _PLANS = "Plans (*.yaml *.yml);;All files (*)"
 _POSES = "Poses (*.csv);;All files (*)"
 _TITLE = "cdpr-designer"
 _STARTER = "fast"  #: The study that has a comment to every field
-_EXPORTS: dict[What, tuple[str, str, str]] = {
+_EXPORTS: dict[ExportContent, tuple[str, str, str]] = {
     "report": ("Folder for the report", "-report", ""),
     "picture": ("Picture of the scene", ".png", "Pictures (*.png)"),
     "tables": ("Folder for the tables", "-tables", ""),
@@ -145,8 +143,8 @@ class Files(QObject):
         name, _ = QFileDialog.getOpenFileName(self._parent, "Import a robot", "", _ROBOTS)
         if not name:
             return
-        from designer.foreign.study import ImportAnswers, load_importers, read_foreign, study_text
         from designer.io.output import write_file
+        from designer.plugins import require_ring
 
         source = Path(name)
         stem = source.stem.removesuffix("_bodies").removesuffix("_cables")
@@ -154,8 +152,12 @@ class Files(QObject):
         name, _ = QFileDialog.getSaveFileName(self._parent, "Save the study as", start, _STUDIES)
 
         def write() -> None:
-            importers, _ = load_importers(self._plugins)
-            text = study_text(read_foreign(source, importers=importers), ImportAnswers())
+            require_ring("import")
+            from designer.foreign import study as foreign
+
+            importers, _ = foreign.load_importers(self._plugins)
+            robot = foreign.read_foreign(source, importers=importers)
+            text = foreign.study_text(robot, foreign.ImportAnswers())
             write_file(Path(name), text)  # what the robot's file does not say is to be filled in
 
         if name and self._succeeds(write, "Not imported"):
@@ -290,14 +292,13 @@ class Files(QObject):
     # Plans
 
     def optimise(self) -> None:
-        """Ask for a plan, and search for a better design of the study."""
-        plan = self._asked_for("Plan of an optimisation", _PLANS)
+        plan = self._choose_file("Plan of an optimisation", _PLANS)
         if plan is not None:
             self._live.begin_long("optimise", plan=plan)
 
     def sweep(self) -> None:
         """Ask for a plan and where its store is to be, and solve the study for all its values."""
-        plan = self._asked_for("Plan of a sweep", _PLANS)
+        plan = self._choose_file("Plan of a sweep", _PLANS)
         if plan is None:
             return
         start, option = str(plan.with_suffix(".zarr").resolve()), QFileDialog.Option.ShowDirsOnly
@@ -306,7 +307,7 @@ class Files(QObject):
         if name:
             self._live.begin_long("sweep", plan=plan, target=Path(name))
 
-    def _asked_for(self, title: str, kinds: str) -> Path | None:
+    def _choose_file(self, title: str, kinds: str) -> Path | None:
         session = self._live.session
         if session is None:
             return None
@@ -340,26 +341,24 @@ class Files(QObject):
 
     def export_lengths(self) -> None:
         """Ask for a table of poses and where their lengths are to be, and write them."""
-        poses = self._asked_for("Poses", _POSES)
+        poses = self._choose_file("Poses", _POSES)
         if poses is not None:
             self.export("lengths", poses=poses)
 
-    def export(self, content: What, **options: Path) -> None:
-        """Ask where a report, tables or a file are to be, and write them."""
-        target = self._asked_for_target(content)
+    def export(self, content: ExportContent, **options: Path) -> None:
+        target = self._choose_target(content)
         if target is not None:
             ropes = self._live.answers.get("ropes") if content == "tables" else None
             self._live.begin_long("export", content=content, target=target, ropes=ropes, **options)
 
     def save_picture(self, scene: QWidget) -> None:
-        """Ask where a picture of the scene is to be, and save it."""
-        target = self._asked_for_target("picture")
+        target = self._choose_target("picture")
         if target is not None:
             is_saved = scene.grab().save(str(target))
-            said = f"Saved {target}" if is_saved else f"{target}: cannot be written"
-            self._live.message.emit(said)
+            text = f"Saved {target}" if is_saved else f"{target}: cannot be written"
+            self._live.message.emit(text)
 
-    def _asked_for_target(self, content: What) -> Path | None:
+    def _choose_target(self, content: ExportContent) -> Path | None:
         session, (title, ending, kinds) = self._live.session, _EXPORTS[content]
         if session is None:
             return None

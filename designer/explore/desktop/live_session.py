@@ -45,33 +45,30 @@ class Ages(QObject):
 
     @property
     def is_waiting(self) -> bool:
-        """Whether something may become old by itself."""
         return self._timer.isActive()
 
     def renew(self, aspect: str, question: Question, present: Question | None) -> None:
         """Take in that the answer to a question is shown."""
         self._states[aspect] = _state_of(aspect, question)
-        self._freshen(aspect)
+        self._old_since_s.pop(aspect, None)
+        self.outdated -= {aspect}
         if present is not None:
-            self._compare(aspect, present, time.monotonic())
+            self._compare([aspect], present)
 
     def follow(self, present: Question) -> None:
         """Compare all that is shown with the present state."""
+        self._compare(self._states, present)
+
+    def _compare(self, aspects: Iterable[str], present: Question) -> None:
         now_s = time.monotonic()  # one change makes all of them old at once
-        for aspect in self._states:
-            self._compare(aspect, present, now_s)
-
-    def _compare(self, aspect: str, present: Question, now_s: float) -> None:
-        if self._states[aspect] == _state_of(aspect, present):
-            self._freshen(aspect)
-        elif aspect not in self._old_since_s:
-            self._old_since_s[aspect] = now_s
-            if not self._timer.isActive():  # else a slider that goes on moving would put it off
-                self._timer.start(_OLD_MS)
-
-    def _freshen(self, aspect: str) -> None:
-        self._old_since_s.pop(aspect, None)
-        self.outdated -= {aspect}
+        for aspect in aspects:
+            if self._states[aspect] == _state_of(aspect, present):
+                self._old_since_s.pop(aspect, None)
+                self.outdated -= {aspect}
+            elif aspect not in self._old_since_s:
+                self._old_since_s[aspect] = now_s
+                if not self._timer.isActive():  # else a slider that goes on moving would put it off
+                    self._timer.start(_OLD_MS)
 
     def _tell(self) -> None:
         """Say what is old by now, and wait for the rest: a timer may come a little early."""
@@ -90,7 +87,7 @@ class Ages(QObject):
 
 
 def _state_of(aspect: str, question: Question) -> object:
-    if aspect == "here":
+    if aspect == "pose":
         return question.text, question.rope, question.place.tobytes()
     if aspect in ("map", "worst"):
         return question.text, question.rope
@@ -108,7 +105,7 @@ _SHOWN_AS: dict[Kind, tuple[str, ...]] = {
 LONG: tuple[Long, ...] = ("select", "diagnose", "export", "optimise", "sweep")
 """What takes long: with progress, and cancelled by hand."""
 NAMES: dict[str, str] = {
-    "here": "the pose",
+    "pose": "the pose",
     "coarse": "the map",
     "fine": "the map",
     "worst": "the worst pose",
@@ -192,7 +189,6 @@ class LiveSession(QObject):
 
     @property
     def busy(self) -> frozenset[Kind]:
-        """Kinds of questions that have no answer yet."""
         return frozenset(self._pending)
 
     @property
@@ -223,7 +219,7 @@ class LiveSession(QObject):
         question = None if self.session is None else self.session.question()
         if self.session is None or question is None:
             return None
-        answers = (self.answers.get(kind) for kind in ("here", "worst", "ropes"))
+        answers = (self.answers.get(kind) for kind in ("pose", "worst", "ropes"))
         return Pin(question, self.session.fields(), *answers)
 
     # Which study
@@ -269,7 +265,6 @@ class LiveSession(QObject):
             self.do(lambda session: session.set_text(session.saved_text))
 
     def write(self, text: str) -> None:
-        """Take the study as it was written."""
         if self.session is not None and text != self.session.text:
             self.do(lambda session: session.set_text(text, continuous=True))
 
@@ -348,7 +343,6 @@ class LiveSession(QObject):
         self.taken_over.emit()
 
     def compare_in_map(self, is_compared: bool) -> None:
-        """Have the map show the difference to the pinned state, or not."""
         self._compares_map = is_compared
         self._see_pinned()
 
@@ -405,14 +399,14 @@ class LiveSession(QObject):
             self._worker.cancel("select")
             self._newest["select"] = self._pending.pop("select")
             self._tell_failed("select", "given up, since the study has changed")
-        self._ask("here", question)
+        self._ask("pose", question)
         # A map is the same wherever the platform is.
         if before is None or (before.text, before.rope) != (question.text, question.rope):
             if moving:
                 self._ask("coarse", question)
             self._rest.start(_REST_MS if moving else 0)
         elif not moving:
-            self._ask("here", question, settled=True)
+            self._ask("pose", question, settled=True)
 
     def _ask_map(self, kind: Kind) -> None:
         if self.question is not None:
@@ -423,7 +417,7 @@ class LiveSession(QObject):
             kinds: tuple[Kind, ...] = ("fine", "ropes", "worst")
             for kind in kinds:
                 self._ask(kind, self.question)
-            self._ask("here", self.question, settled=True)
+            self._ask("pose", self.question, settled=True)
             if self.question.study.selection is None:
                 self._ask("requirements", self.question)
             if self.question.study.measurements is not None:

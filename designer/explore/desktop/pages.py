@@ -187,11 +187,9 @@ class TextPage(QWidget):
         self.leave.setEnabled(session.study is not None)
 
     def _write(self) -> None:
-        """Hand on what was typed."""
         self._live.write(self.editor.toPlainText())
 
     def _flush(self) -> None:
-        """Do so at once."""
         if self._pause.isActive():
             self._pause.stop()
             self._write()

@@ -71,8 +71,8 @@ class ModeWindow(QDialog):
         self._answer: PoseAnswer | None = None
         self._lines: FloatArray | None = None
         self._moves = _NO_MOVES
-        live.listen(self._show_here, "here")
-        grey_when_old(live, {"here"}, self.words)
+        live.listen(self._show_answer, "pose")
+        grey_when_old(live, {"pose"}, self.words)
 
     def showEvent(self, event: QShowEvent) -> None:
         self._show_modes()
@@ -89,7 +89,7 @@ class ModeWindow(QDialog):
         number = self.chosen.currentIndex()
         self.moves_in_scene.emit(None if modes is None or number < 0 else modes.modes[number].shape)
 
-    def _show_here(self, answer: PoseAnswer | None) -> None:
+    def _show_answer(self, answer: PoseAnswer | None) -> None:
         self._answer = answer
         if self.isVisible():
             self._show_modes()
@@ -108,8 +108,8 @@ class ModeWindow(QDialog):
         self.words.setText(
             "No cables hold the platform here, or its inertia is not in the study."
             if modes is None
-            else "Displacements are drawn far larger than they are, and all modes equally fast; "
-            "winches are braked, and nothing damps."
+            else "Displacements are exaggerated, and all modes shown at one speed; winches braked, "
+            "no damping."
         )
         self._choose()
 
@@ -168,7 +168,6 @@ class ModeView(QWidget):
 
 
 def _columns(unit: str, per_N: float) -> tuple[Column, ...]:
-    """The columns, with tensions in a unit."""
 
     def tension(value: float) -> str:
         return fmt.number(per_N * value, 4)
@@ -191,7 +190,7 @@ def _columns(unit: str, per_N: float) -> tuple[Column, ...]:
              "its ends.", millimetres, None),
             ("stretch", "mm", "stretch_m", "How much longer the cable is under its load than "
              "unstrained.", millimetres, None),
-            ("used", "%", "utilisation", "Utilisation: largest tension anywhere in the cable over "
+            ("util.", "%", "utilisation", "Utilisation: largest tension anywhere in the cable over "
              "the allowable tension.", lambda value: fmt.fixed(100.0 * value, 1),
              lambda cable: cable.utilisation),
         )
@@ -223,15 +222,15 @@ class PanelPose(QWidget):
     def __init__(self, live: LiveSession) -> None:
         super().__init__()
         self._live = live
-        self.setObjectName("here")
+        self.setObjectName("pose")
         self.setMinimumWidth(384)
         self._place = np.zeros(6)
         self._entries: list[LineEntry] = []
         self._turn_labels: list[QLabel] = []
         self.verdict, self.cautions = result("verdict"), result("cautions", "fault")
-        self.facts = {name: result(f"here {name}", tip=tip) for name, _, tip in _FACTS}
+        self.facts = {name: result(f"pose {name}", tip=tip) for name, _, tip in _FACTS}
         self.stability = result(
-            "here stability", tip="Whether the platform stays here with the winches held."
+            "pose stability", tip="Whether the platform stays here with the winches held."
         )
         self.table = Table("cables", _columns("kN", 1e-3))
         small = self.table.font()
@@ -270,9 +269,9 @@ class PanelPose(QWidget):
         rows.addWidget(self.table, 1)
         rows.addLayout(row_of(keep, modes))
         live.moved.connect(self._show_place)
-        live.listen(self._show_here, "here")
+        live.listen(self._show_answer, "pose")
         results = self.verdict, self.cautions, self.stability, self.table, *self.facts.values()
-        grey_when_old(live, {"here"}, *results)
+        grey_when_old(live, {"pose"}, *results)
 
     def _show_place(self) -> None:
         """Show where the platform is; an entry that is being written in is left alone."""
@@ -292,7 +291,7 @@ class PanelPose(QWidget):
         for title in self._turn_labels:
             title.setVisible(can_turn)
 
-    def _show_here(self, answer: PoseAnswer | None) -> None:
+    def _show_answer(self, answer: PoseAnswer | None) -> None:
         if answer is None:
             self.table.rows.show(())
             return

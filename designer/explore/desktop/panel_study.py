@@ -239,7 +239,6 @@ class FieldRow(QWidget):
         self._live.do(lambda session: session.edit(path, text, continuous=moving), moving=moving)
 
     def _settle(self) -> None:
-        """The slider was let go."""
         self._live.do(Session.settle)
 
     def _entered(self) -> None:

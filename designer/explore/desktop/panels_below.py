@@ -39,9 +39,9 @@ if TYPE_CHECKING:
     from designer.explore.answers import RopeRow, Ropes
     from designer.explore.measurements import DiagnosisAnswer, Residuals
     from designer.explore.question import Rope, RopePerCable
-    from designer.selection.groups.result import GroupChoice
+    from designer.selection.groups import GroupChoice
 
-_NOT_EVALUATED = "Not known yet: the full selection evaluates all that the study asks for."
+_NOT_EVALUATED = "Not evaluated yet: the full selection evaluates all requirements of the study."
 _UNMET_FIRST = (State.FAILS, State.OPEN, State.HOLDS)
 _ROLES = {Answer.YES: "good", Answer.NO: "fault", Answer.OPEN: "doubt"}
 
@@ -56,7 +56,7 @@ def _requirement_rank(requirement: Requirement) -> float:
 REQUIREMENT_COLUMNS = (
     Column("state", lambda r: STATES[r.state], "Whether it holds; what does not, first.",
            _requirement_rank),
-    Column("requirement", attrgetter("title"), "What the study asks for."),
+    Column("requirement", attrgetter("title"), "Title of the requirement."),
     Column("load case", attrgetter("load_case"),
            "The load case; 'all' for what no load case changes."),
     Column("demand", lambda r: with_unit(r.demand, r.unit),
@@ -71,7 +71,7 @@ REQUIREMENT_COLUMNS = (
                "" if r.place is None else fmt.position(r.place[:3]), fmt.printed(r.direction)])),
            "Where the platform is; a click takes it there. Then the direction of wind and inertia, "
            "or the lost cable."),
-    Column("what it is", lambda r: fmt.capital(r.remark or r.formula),
+    Column("remark or formula", lambda r: fmt.capital(r.remark or r.formula),
            "What must be known beside the figures; else how it is evaluated.",
            attrgetter("formula")),
 )  # fmt: skip
@@ -99,7 +99,9 @@ class PanelRequirements(QWidget):
         self.evaluate = button(
             "evaluate all", "Full selection", lambda: live.begin_long("select"), tip
         )
-        panel(self, "requirements", row_of(self.answer, self.evaluate), self.table)
+        above = row_of(self.answer, self.evaluate)
+        above.setStretch(0, 1)
+        panel(self, "requirements", above, self.table)
         live.listen(self._show_requirements, "select", "requirements")
         grey_when_old(live, {"select"}, self.answer, self.table)
 
@@ -175,14 +177,14 @@ ROPE_COLUMNS = (
     _scaled("mass [kg]", "figures.mass_kg", 1.0, 4, "All cables at the longest length each needs."),
     _scaled("kg/m", "size.linear_density_kg_per_m", 1.0, 3, "Mass per length."),
     _scaled("MBL [kN]", "size.minimum_breaking_load_N", 1e-3, 4, "Minimum breaking load."),
-    _scaled("largest T [kN]", "verification.max_tension_N", 1e-3, 4, "Largest in any cable."),
+    _scaled("max. tension [kN]", "verification.max_tension_N", 1e-3, 4, "Largest in any cable."),
     _scaled("drum [mm]", "figures.drum_diameter_m", 1e3, 4, "Least diameter of drums and sheaves."),
     _scaled("stiffness [kN/m]", "figures.stiffness_N_per_m", 1e-3, 3, "Least, of the platform."),
     _scaled("cost", "figures.cost", 1.0, 4, "Of all cables; estimated where no grade has a price."),
     Column(
-        "what became of it",
+        "outcome",
         attrgetter("reason"),
-        "Why it is in or out; the best by the objectives of the study first.",
+        "Why it is chosen or rejected; the best by the objectives of the study first.",
         _rope_rank,
     ),
 )
@@ -208,7 +210,7 @@ class PanelRopes(QWidget):
         self.maker = DropDown("maker", 9, _ALL_MAKERS)
         for choice in (self.material, self.maker):
             choice.currentTextChanged.connect(self._filter)
-        self.only_holding = check_box("only what holds", "only what holds", self._filter)
+        self.only_holding = check_box("only what holds", "only ropes that hold", self._filter)
         tip = "Colours the map for the thinnest cable of the configured family at each pose."
         family = button("no rope", "Use generic cable", lambda: live.choose(None), tip)
         tip = (
@@ -222,12 +224,14 @@ class PanelRopes(QWidget):
         self.answer, self.groups = result("best rope"), result("groups")
         tip = "Colours the map with the rope of each group."
         self.look_at_groups = button("look at groups", "Show the groups", self._choose_groups, tip)
+        groups = row_of(self.groups, self.look_at_groups)
+        groups.setStretch(0, 1)
         panel(
             self,
             "ropes",
             row_of(self.material, self.maker, self.only_holding, None, family, self.select),
             self.answer,
-            row_of(self.groups, self.look_at_groups),
+            groups,
             self.table,
         )
         live.listen(self._show_ropes, "ropes", "select")
@@ -294,7 +298,6 @@ def _answer(ropes: Ropes) -> str:
 
 
 def _groups_text(choice: GroupChoice) -> str:
-    """Which rope each group gets, and how sure that is."""
     chosen, proof = choice.chosen, choice.proof_sentence
     if not chosen.is_found:
         return f"Groups: none was found. {proof}"
@@ -308,7 +311,7 @@ def _groups_text(choice: GroupChoice) -> str:
 
 
 _DIFFERENCE_COLUMNS = (
-    Column("", attrgetter("title"), "Figure, or value of the study."),
+    Column("quantity", attrgetter("title"), "Figure, or value of the study."),
     Column("A", lambda r: r.before or "–", "In the pinned state.", is_number=True),
     Column("now", lambda r: r.after or "–", "In the present state.", is_number=True),
     Column("difference", attrgetter("difference_text"), "Now less A.", is_number=True),
@@ -333,7 +336,7 @@ class PanelCompare(QWidget):
         panel(self, "compare", above, self._summary, self.table)
         live.answered.connect(self._show_differences)
         live.changed.connect(self._show_differences)
-        grey_when_old(live, {"here", "worst", "ropes"}, self._summary, self.table)
+        grey_when_old(live, {"pose", "worst", "ropes"}, self._summary, self.table)
         self._show_differences()
 
     def _show_differences(self) -> None:
@@ -342,7 +345,9 @@ class PanelCompare(QWidget):
         self.in_map.setEnabled(differences is not None)
         if differences is None:
             self.in_map.setChecked(False)
-            self._summary.setText("Nothing is pinned: pin a state, go on, and see what changes.")
+            self._summary.setText(
+                "Nothing is pinned. Pin a state as A, change the study, and compare the two."
+            )
             self.table.rows.show(())
         else:
             self._summary.setText(_summary(differences))

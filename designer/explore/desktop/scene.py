@@ -9,7 +9,7 @@ colours of the window, and without a new frame of the scene.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -86,14 +86,17 @@ class Overlay(QWidget):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(QColor(current_theme().muted))
+        names: list[QRectF] = []
         for name, position_m in self.names:
             x, y = self._view().pixels(position_m)
             width = painter.fontMetrics().horizontalAdvance(name)
             has_room = x + 6 + width < self.width() - self.legend_px
-            painter.drawText(QPointF(x + 6 if has_room else x - 6 - width, y - 6), name)
-        self._draw_worst(painter)
+            corner = QPointF(x + 6 if has_room else x - 6 - width, y - 6)
+            painter.drawText(corner, name)
+            names.append(QRectF(corner.x(), corner.y() - 14, width, 18))
         for place_m in (self.platform_m, self.chosen_m):
             self._draw_handle(painter, place_m)
+        self._draw_worst(painter, names)
         self._draw_rule(painter)
         if self.pointed is not None:
             place, text = self.pointed
@@ -101,7 +104,7 @@ class Overlay(QWidget):
         if self.note:
             self._write_boxed(painter, QPointF(10, 10), self.note)
 
-    def _draw_worst(self, painter: QPainter) -> None:
+    def _draw_worst(self, painter: QPainter, names: Sequence[QRectF]) -> None:
         if self.worst is None:
             return
         place, text = self.worst
@@ -113,7 +116,11 @@ class Overlay(QWidget):
             painter.drawLine(QPointF(x - 13, y), QPointF(x - 4, y))
             painter.drawLine(QPointF(x + 4, y), QPointF(x + 13, y))
         painter.setPen(QColor(marked))
-        self._write(painter, QPointF(x + 16, y - 8), text)
+        box = QRectF(painter.boundingRect(QRectF(0, 0, 400, 200), 0, text))
+        covers = any(
+            box.translated(x + 16, y - 8 - box.height()).intersects(name) for name in names
+        )
+        self._write(painter, QPointF(x + 16, y + (8 + box.height() if covers else -8)), text)
 
     def _draw_rule(self, painter: QPainter) -> None:
         ends = [QPointF(*self._view().pixels(end)) for end in self.rule_m]
@@ -140,7 +147,6 @@ class Overlay(QWidget):
             painter.drawPolyline([tip + QPointF(-5, 6), tip, tip + QPointF(5, 6)])
 
     def _write(self, painter: QPainter, place: QPointF, text: str) -> None:
-        """Write on a ground that keeps it readable, inside the picture."""
         box = QRectF(painter.boundingRect(QRectF(0, 0, 400, 200), 0, text))
         left = min(place.x(), self.width() - box.width() - 6)
         ground = QColor(current_theme().base)
@@ -178,6 +184,7 @@ class Legend(QFrame):
         self.setFixedWidth(_WIDTH_PX)
         self.hide()
         self.steps: Steps | None = None
+        self._is_old = False
         self._meanings: tuple[str, ...] = ()
         self._title, self._note = label("", "heading"), label("", "muted")
         self._bar, self._keys = ColourBar(), QFormLayout()
@@ -199,7 +206,7 @@ class Legend(QFrame):
         self.steps, self._meanings = painting.steps, tuple(key.meaning for key in keys)
         self._title.setText(painting.title)
         self._note.setText(painting.note(answer))
-        self._bar.show_steps(painting.steps, painting.is_old)
+        self._is_old = painting.is_old
         while self._keys.rowCount():
             self._keys.removeRow(0)
         for key in keys:
@@ -216,7 +223,15 @@ class Legend(QFrame):
             swatch.setPixmap(picture)
             self._keys.addRow(swatch, meaning)
         self.show()
-        self.resize(_WIDTH_PX, self.heightForWidth(_WIDTH_PX))
+
+    def fit(self, room_px: int) -> None:
+        """Be no higher than this, if need be with every second or fourth tick alone."""
+        for every in (1, 2, 4):
+            self._bar.show_steps(self.steps, self._is_old, every)
+            height = self.heightForWidth(_WIDTH_PX)
+            if height <= room_px:
+                break
+        self.resize(_WIDTH_PX, height)
 
 
 class ColourBar(QWidget):
@@ -225,12 +240,15 @@ class ColourBar(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._steps: Steps | None = None
+        self._ticks: list[float] = []
         self._is_old = False
 
-    def show_steps(self, steps: Steps | None, is_old: bool) -> None:
-        """Show a scale, grey where it is of an older state; nothing for None."""
+    def show_steps(self, steps: Steps | None, is_old: bool, every: int) -> None:
+        """Show a scale with every so many of its ticks, 0 among them; nothing for None."""
         self._steps, self._is_old = steps, is_old
-        lines = 0.0 if steps is None else 1.25 * len(steps.ticks) + 1.2
+        ticks = [] if steps is None else [float(tick) for tick in steps.ticks]
+        self._ticks = ticks[ticks.index(0.0) % every if 0.0 in ticks else 0 :: every]
+        lines = 0.0 if steps is None else 1.25 * len(self._ticks) + 1.2
         self.setFixedHeight(round(lines * self.fontMetrics().height()))
         self.setVisible(steps is not None)
         self.update()
@@ -252,7 +270,7 @@ class ColourBar(QWidget):
             painter.drawRect(QRectF(0, at(number + 1), _BAR_PX, height / count + 0.5))
         painter.setPen(QColor(current_theme().ink))
         for number, edge in enumerate(self._steps.edges):
-            if edge in self._steps.ticks:
+            if float(edge) in self._ticks:
                 y = at(number)
                 painter.drawLine(QPointF(_BAR_PX, y), QPointF(_BAR_PX + 4, y))
                 place = QRectF(_BAR_PX + 8, y - 0.5 * line, _WIDTH_PX, line)
@@ -379,7 +397,6 @@ class SceneView(QtInteractor):
         super().closeEvent(event)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Keep overlay, legend and camera at the size of the scene."""
         super().resizeEvent(event)
         self.view = replace(
             self.view, width_px=max(self.width(), 1), height_px=max(self.height(), 1)
@@ -389,13 +406,14 @@ class SceneView(QtInteractor):
         self.resized.emit()
 
     def place_legend(self) -> None:
+        if not self.colour_legend.isHidden():
+            self.colour_legend.fit(self.height() - 24)
         self.colour_legend.move(self.width() - self.colour_legend.width() - 12, 12)
         self.overlay.legend_px = self.colour_legend.width() + 12
 
     # What is asked for by mouse and keys
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Begin a drag of the platform or of the picture, or a click."""
         self.setFocus()
         self._pressed = self._last = event.position().toPoint()
         self._grip, self._gripped = self._grip_at(event.position())
@@ -441,7 +459,6 @@ class SceneView(QtInteractor):
         self._rest.start()
 
     def _click(self, place: QPointF) -> None:
-        """Measure, choose an exit point, or take the platform to what is there."""
         if self.is_measuring:
             self._measure(place, is_end=True)
         elif self._grip:
@@ -490,7 +507,6 @@ class SceneView(QtInteractor):
         self._see(self.view.zoomed(factor, event.position().x(), event.position().y()))
 
     def _see(self, view: View) -> None:
-        """Look from where the user wants to."""
         self.is_turned, self.view = True, view
         self.redraw()
 

@@ -152,7 +152,6 @@ class Painting:
         return pyvista.LookupTable(colours, n_values=colours.N)
 
     def of(self, answer: MapAnswer) -> Values:
-        """Return what an answer has at its points."""
         values = answer.values
         change = answer.difference(self.quantity.key) if self.is_difference else None
         scaled = values[self.quantity.key] if change is None else change
@@ -191,7 +190,7 @@ class Painting:
             hatch = current_theme().hatch
             keys.append(Key(hatch[0], "no rope serves", hatch[1]))
         if values.is_left_out.any():
-            keys.append(Key(current_theme().left_out, "left out: a cable hangs below"))
+            keys.append(Key(current_theme().left_out, "excluded: a cable hangs below"))
         return keys
 
 
@@ -410,7 +409,6 @@ class MapSurface:
         mesh.Modified()
 
     def first_hit(self, start_m: FloatArray, end_m: FloatArray) -> Hit | None:
-        """Return where a line first meets what is drawn of it."""
         from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
 
         if not self.is_visible or len(self._faces) == 0:
@@ -598,7 +596,6 @@ class SceneActors:
     def hit(
         self, start_m: FloatArray, end_m: FloatArray, pixel: FloatArray, view: View
     ) -> Hit | None:
-        """Return what of the map a line of sight meets first."""
         if len(self._points_m):
             away = np.linalg.norm(view.pixels(self._points_m) - pixel, axis=1)
             number = int(np.argmin(away))

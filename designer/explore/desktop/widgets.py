@@ -157,7 +157,7 @@ QToolTip {{ color: {theme.ink}; background: {theme.raised}; border: 1px solid {t
     padding: 4px; }}
 QDockWidget::title {{ padding: 4px 8px; background: {theme.window}; }}
 QHeaderView::section {{ background: {theme.window}; color: {theme.muted}; border: none;
-    border-bottom: 1px solid {theme.border}; padding: 3px 4px; }}
+    border-bottom: 1px solid {theme.border}; padding: 3px 2px; }}
 QTableView {{ border: none; gridline-color: {theme.border}; }}
 QScrollArea {{ border: none; }}
 QFrame#legend {{ background: #e1{theme.base[1:]}; border: 1px solid {theme.border};
@@ -305,7 +305,6 @@ class DropDown(QComboBox):
         self.blockSignals(False)
 
     def showPopup(self) -> None:
-        """Open the list as wide as its longest entry."""
         self.view().setMinimumWidth(self.view().sizeHintForColumn(0) + 24)
         super().showPopup()
 
@@ -512,12 +511,10 @@ class Table(QTableView):
                 self.setItemDelegateForColumn(number, _ShareBar(self))
 
     def narrow(self, accepts: Callable[[Any], bool]) -> None:
-        """Show those rows alone that are accepted."""
         self._filter.accepts = accepts
         self._filter.invalidate()
 
     def row_at(self, index: QModelIndex) -> Any:
-        """Return the row that is seen there."""
         return self.rows.rows[self._filter.mapToSource(index).row()]
 
     def mark(self, is_marked: Callable[[Any], bool]) -> None:

@@ -38,7 +38,7 @@ from designer.explore.quantities import QUANTITIES
 from designer.resources import example_file, example_names
 
 if TYPE_CHECKING:
-    from designer.explore.export import What
+    from designer.explore.export import ExportContent
     from designer.explore.question import Long
 
 _KEY = QKeySequence.StandardKey
@@ -48,7 +48,7 @@ _VIEWS = (
     ("front", "From the &front", "Ctrl+Alt+F", "Look along y"),
     ("side", "From the &side", "Ctrl+Alt+S", "Look along x, against it"),
 )
-_EXPORTS: tuple[tuple[str, What, str, str, str], ...] = (
+_EXPORTS: tuple[tuple[str, ExportContent, str, str, str], ...] = (
     ("report", "report", "&Report …", "Ctrl+R", "All that the command writes"),
     ("picture", "picture", "&Picture …", "Ctrl+Shift+P", "The scene as it is seen"),
     ("tables", "tables", "&Tables …", "Ctrl+Shift+T", "Cables, map and ropes as CSV"),
@@ -171,7 +171,7 @@ class Menus:
         window, files = self._window, self._window.files
         menu = self._menu("&File", "file menu")
 
-        def export(content: What) -> None:
+        def export(content: ExportContent) -> None:
             if content == "picture":
                 files.save_picture(window.work.scene)
             else:
@@ -495,7 +495,6 @@ class Window(QMainWindow):
             self.work.scene.setFocus()
 
     def show_text(self) -> None:
-        """Show the study as text, with its faults."""
         self._show_page(self.text)
         self.text.editor.setFocus()
 
@@ -529,7 +528,6 @@ class Window(QMainWindow):
     # Look, and the end
 
     def apply_theme(self, choice: str) -> None:
-        """Take the colours of a theme, or those of the system."""
         self.settings.theme = choice
         app = QApplication.instance()
         assert isinstance(app, QApplication)

@@ -68,7 +68,9 @@ class WorkPage(QWidget):
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 0, 0, 0)
         rows.setSpacing(0)
-        self.height_slider = named(QSlider(Qt.Orientation.Vertical), "slice height")
+        self.height_slider = named(
+            QSlider(Qt.Orientation.Vertical), "slice height", "Height of the slice."
+        )
         self.height_slider.setAccessibleName("Height of the slice")
         self.height_slider.setRange(0, 100)
         self.height_slider.setValue(50)
@@ -96,7 +98,7 @@ class WorkPage(QWidget):
         live.quantity_changed.connect(
             lambda key: self.quantity.setCurrentIndex(self.quantity.findData(key))
         )
-        live.listen(self._show_here, "here")
+        live.listen(self._show_answer, "pose")
         live.listen(self.show_map, "coarse", "fine")
         live.listen(self._show_worst, "worst")
         live.listen(self._take_residuals, "residuals")
@@ -191,7 +193,7 @@ class WorkPage(QWidget):
             if not self.plays_path.isChecked():  # else with its cables, once they are answered
                 self._show_place()
 
-    def _show_here(self, answer: PoseAnswer | None) -> None:
+    def _show_answer(self, answer: PoseAnswer | None) -> None:
         self._pose_answer = answer
         self._show_place()
 
@@ -233,7 +235,7 @@ class WorkPage(QWidget):
         motion = None if self._study is None else self._study.robot.platform.motion
         if motion is None or not self.isVisible():
             self.plays_path.setChecked(False)
-        elif "here" not in self._live.busy:
+        elif "pose" not in self._live.busy:
             time_s = motion.time_s - motion.time_s[0]
             pace = max(float(time_s[-1]) / _LONGEST_PATH_S, 1.0)
             number = int(np.searchsorted(time_s, (time.monotonic() - self._play_start_s) * pace))
@@ -308,11 +310,11 @@ class WorkPage(QWidget):
 
     def _write_note(self) -> None:
         factor = self.exaggeration.currentData()
-        sag = f"sag drawn {factor} times" if factor != 1 else ""
+        sag = f"sag exaggerated {factor} times" if factor != 1 else ""
         has_rows = self._shows_rows and self._residuals is not None
         scale = f"residual from 0 (dark) to {_BRIGHTEST:g} times the noise (bright)"
         rows = f"measured rows: {scale}" if has_rows else ""
-        mode = "mode drawn far larger than it is" if self._mode is not None else ""
+        mode = "mode exaggerated" if self._mode is not None else ""
         lines = filter(None, [sag, rows, mode, self._path_note])
         self.scene.overlay.note = "\n".join(lines)
         self.scene.overlay.update()
@@ -375,7 +377,7 @@ class WorkPage(QWidget):
             azimuth = clear_azimuth_rad(lines, elevation)
         # clear of the legend at the right
         width, height = max(self.scene.width(), 1), max(self.scene.height(), 1)
-        right = 0.97 - self.scene.colour_legend.width() / width
+        right = 0.95 - self.scene.overlay.legend_px / width
         frame = (0.05, right, 0.08, 0.92)
         corners = stage.everything_m()
         self.scene.view = fitting(corners, azimuth, elevation, frame, (width, height))
@@ -393,7 +395,7 @@ class WorkPage(QWidget):
         quantity = self.painting.quantity
         value = float(values[quantity.key])
         if values["left_out"]:
-            text = "left out: a cable hangs below"
+            text = "excluded: a cable hangs below"
         elif quantity.is_category:
             assert self._study is not None
             labels = category_labels(quantity.key, self._study.robot.n_cables)

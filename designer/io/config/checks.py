@@ -19,14 +19,14 @@ from pydantic import TypeAdapter, ValidationError
 from scipy.spatial import QhullError
 
 from designer.arrays import FloatArray
-from designer.documents.bounds import BOUNDS, MOST_CABLES
+from designer.documents.bounds import BOUNDS, MAX_CABLES
 from designer.documents.document import Data, Document, Key
 from designer.documents.fields import kind_at, reader_of
 from designer.documents.opened import open_input, reason
 from designer.documents.picture import LARGEST_PICTURE_BYTES, why_not_shown
 from designer.effects.effect import ALL_ATTACHMENTS, OF_CABLE, Effect
 from designer.errors import Fault
-from designer.io.config.effects import Found, read_effects
+from designer.io.config.effects import DeclaredEffects, read_effects
 from designer.io.config.machine import attached_each
 from designer.io.config.schema import ORIENTATION_KINDS, ColumnSection, StudySection
 from designer.measured.assign import COVARIATE, IGNORE, TIME_NAME, cable_of, is_rotation
@@ -87,10 +87,10 @@ class Parts:
     def n_cables(self) -> int:
         """Number of cables; as many as there may be where the anchors are faulty."""
         anchors = self.read("robot.anchors")
-        return MOST_CABLES if anchors is None else len(anchors)
+        return MAX_CABLES if anchors is None else len(anchors)
 
     @property
-    def declared(self) -> Found:
+    def declared(self) -> DeclaredEffects:
         """The effects, each with its place, and what is wrong with them."""
         return read_effects(self.raw("effects"), self.n_cables, self.effects)
 
@@ -129,8 +129,6 @@ AT_MOST = f"at most {LARGEST.most:g} m: {LARGEST.reason}; check the unit"
 _ANCHORS = "robot.anchors"
 _ATTACHMENTS = "robot.platform.attachments"
 _WINCHES = "robot.winches.positions"
-_TENSION_MAX = "robot.winches.tension_max"
-_ATTACHED = "robot.attached"
 _NEAREST_WINCH_M = 1e-3
 _NO_POINT_MASS = "robot.platform.attachments, or leave it out"
 _REGION = "workspace.region"
@@ -159,8 +157,7 @@ def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]
         strain_stays_small,
         robot_has_a_size,
         winches_fit,
-        largest_tensions_fit,
-        attached_fit,
+        lists_by_cable_fit,
         prism_has_area,
         rectangle_has_area,
         regions_fit_the_plane,
@@ -175,7 +172,7 @@ def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]
         columns_fit_the_robot,
         unknowns_are_known,
         logo_is_a_picture,
-        unknown_poses_can_be_told,
+        unknown_poses_are_identifiable,
         data_have_a_file,
         sessions_have_their_own,
     )
@@ -384,10 +381,10 @@ def _vectors(parts: Parts, origin: FloatArray, size: float) -> Iterator[tuple[st
     ends = parts.array("workspace.region.rectangle")
     if ends is not None:
         yield "workspace.region.rectangle", np.column_stack([ends, [origin[2]] * 2]) - origin
-    turned = parts.read("workspace.orientation")
-    if turned is not None and turned.toward is not None:
-        yield "workspace.orientation.toward", np.array([turned.toward]) - origin
-        yield "workspace.orientation.axis", np.array([turned.axis]) * size
+    orientation = parts.read("workspace.orientation")
+    if orientation is not None and orientation.toward is not None:
+        yield "workspace.orientation.toward", np.array([orientation.toward]) - origin
+        yield "workspace.orientation.axis", np.array([orientation.axis]) * size
     force = parts.array("robot.platform.wrench.force")
     if force is not None and force.any():
         yield "robot.platform.wrench.force", force[None] * size / np.linalg.norm(force)
@@ -445,24 +442,18 @@ def winches_fit(parts: Parts) -> Iterator[Fault]:
         yield parts.fault(_WINCHES, problem, expected, int(index))
 
 
-def largest_tensions_fit(parts: Parts) -> Iterator[Fault]:
-    """A list of the winches' largest tensions has an entry for each cable."""
-    anchors, largest = parts.array(_ANCHORS), parts.read(_TENSION_MAX)
-    if anchors is None or not isinstance(largest, tuple) or len(largest) == len(anchors):
-        return
-    problem = f"{len(largest)} tensions for {len(anchors)} anchors"
-    yield parts.fault(
-        _TENSION_MAX, problem, "one for each anchor, in their order, null for no limit"
-    )
-
-
-def attached_fit(parts: Parts) -> Iterator[Fault]:
-    """A list of what is attached has an entry for each cable."""
-    anchors, attached = parts.array(_ANCHORS), parts.read(_ATTACHED)
-    if anchors is None or not isinstance(attached, tuple) or len(attached) == len(anchors):
-        return
-    problem = f"{len(attached)} entries for {len(anchors)} anchors"
-    yield parts.fault(_ATTACHED, problem, "one for each anchor, in their order, null for nothing")
+def lists_by_cable_fit(parts: Parts) -> Iterator[Fault]:
+    """A list by cable has an entry for each of them."""
+    anchors = parts.array(_ANCHORS)
+    for path, noun, none in (
+        ("robot.winches.tension_max", "tensions", "no limit"),
+        ("robot.attached", "entries", "nothing"),
+    ):
+        entries = parts.read(path)
+        if anchors is not None and isinstance(entries, tuple) and len(entries) != len(anchors):
+            problem = f"{len(entries)} {noun} for {len(anchors)} anchors"
+            expected = f"one for each anchor, in their order, null for {none}"
+            yield parts.fault(path, problem, expected)
 
 
 def prism_has_area(parts: Parts) -> Iterator[Fault]:
@@ -699,43 +690,40 @@ def load_cases_fit(parts: Parts) -> Iterator[Fault]:
     """Load cases have names of their own, cables that exist, and what their wind acts on."""
     first_use: dict[str, int] = {}
     for index, case in _load_cases(parts):
-        yield from _case_fits(parts, index, case, first_use)
+        name, lost = case.get("name"), case.get("cable_lost")
+        if isinstance(name, str) and first_use.setdefault(name, index) != index:
+            problem = f"load_cases[{first_use[name]}] has the name '{name}' already"
+            yield parts.fault(_CASES, problem, "a name of its own", index, "name")
+        if isinstance(lost, int) and not isinstance(lost, bool) and lost > parts.n_cables:
+            problem = f"there is no cable {lost}, the robot has {parts.n_cables}"
+            expected = f"1 to {parts.n_cables} or each"
+            yield parts.fault(_CASES, problem, expected, index, "cable_lost")
+        if lost is not None and parts.n_cables - 1 < (2 if parts.is_planar else 1):
+            problem = "too few cables are left"
+            yield parts.fault(_CASES, problem, "a robot with more", index, "cable_lost")
+        for figure in ("safety_factor", "termination_efficiency"):
+            if case.get(figure) is not None and parts.raw("selection") is None:
+                problem = "there is no selection whose figure it could replace"
+                yield parts.fault(
+                    _CASES, problem, "a selection, or a case without it", index, figure
+                )
+        if case.get("wind") is not None:
+            for problem, expected in _why_no_wind(parts):
+                yield parts.fault(_CASES, problem, expected, index, "wind")
 
 
-def _case_fits(
-    parts: Parts, index: int, case: Mapping[str, object], first_use: dict[str, int]
-) -> Iterator[Fault]:
-    name, lost = case.get("name"), case.get("cable_lost")
-    if isinstance(name, str) and first_use.setdefault(name, index) != index:
-        problem = f"load_cases[{first_use[name]}] has the name '{name}' already"
-        yield parts.fault(_CASES, problem, "a name of its own", index, "name")
-    if isinstance(lost, int) and not isinstance(lost, bool) and lost > parts.n_cables:
-        problem = f"there is no cable {lost}, the robot has {parts.n_cables}"
-        yield parts.fault(_CASES, problem, f"1 to {parts.n_cables} or each", index, "cable_lost")
-    if lost is not None and parts.n_cables - 1 < (2 if parts.is_planar else 1):
-        yield parts.fault(
-            _CASES, "too few cables are left", "a robot with more", index, "cable_lost"
-        )
-    for factor_name in ("safety_factor", "termination_efficiency"):
-        if case.get(factor_name) is not None and parts.raw("selection") is None:
-            problem = "there is no selection whose figure it could replace"
-            yield parts.fault(
-                _CASES, problem, "a selection, or a case without it", index, factor_name
-            )
-    if case.get("wind") is None:
-        return
+def _why_no_wind(parts: Parts) -> Iterator[tuple[str, str]]:
+    """Yield what the wind of a load case lacks, and what is expected."""
     if parts.raw("robot.platform.drag") is None:
-        problem = "the platform has no area in the wind"
         expected = "robot.platform.drag: {area: …, coefficient: …}"
-        yield parts.fault(_CASES, problem, expected, index, "wind")
+        yield "the platform has no area in the wind", expected
     if len(attached_each(parts.read("robot.attached"))) > 1:
         problem = "wind loads cables to which different things are attached in different directions"
         expected = "the same attached to all cables, or no wind; all are solved with one direction"
-        yield parts.fault(_CASES, problem, expected, index, "wind")
+        yield problem, expected
     if parts.raw("cable.drag_coefficient") is None:
-        problem = "the drag of the cables is not given"
         expected = "cable.drag_coefficient, such as 1.2; 0 for none"
-        yield parts.fault(_CASES, problem, expected, index, "wind")
+        yield "the drag of the cables is not given", expected
 
 
 _FREQUENCY = "selection.limits.platform_frequency"
@@ -853,16 +841,16 @@ def sessions_have_their_own(parts: Parts) -> Iterator[Fault]:
             if name in of_machine or name == POSES:
                 problem = f"'{name}' {why} of a session"
                 yield parts.fault(_SESSIONS, problem, "another", number, "unknown", index)
-        own = read_effects(session.get("effects"), parts.n_cables, parts.effects, place)
-        for flaw in own.flaws:
+        declared_there = read_effects(session.get("effects"), parts.n_cables, parts.effects, place)
+        for flaw in declared_there.flaws:
             yield parts.document.fault(*flaw)
-        for where, effect in own.effects:
+        for keys, effect in declared_there.effects:
             if effect.id in declared:
                 problem = f"'{effect.id}' is declared of the machine, so of all sessions"
-                yield parts.document.fault(where, problem, "one of the two")
+                yield parts.document.fault(keys, problem, "one of the two")
 
 
-def unknown_poses_can_be_told(parts: Parts) -> Iterator[Fault]:
+def unknown_poses_are_identifiable(parts: Parts) -> Iterator[Fault]:
     """Where poses are unknown, attachments and the vertical are not."""
     unknown = {name: index for index, name in _texts(parts.raw(_UNKNOWN))}
     if POSES not in unknown:

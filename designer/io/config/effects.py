@@ -16,12 +16,12 @@ from designer.study import DeclaredEffect
 from designer.units import describe
 
 _SECTION: Keys = ("effects",)
-_MOST_LISTED = 8
+_MAX_LISTED = 8
 """Names of parameters in a message; of more, the first and the last are enough."""
 
 
 @dataclass(slots=True)
-class Found:
+class DeclaredEffects:
     """The effects of a section, each with its place, and all that is wrong."""
 
     n_cables: int
@@ -45,9 +45,9 @@ class Found:
 
 def read_effects(
     data: Data, n_cables: int, effects_by_id: Mapping[str, Effect], section: Keys = _SECTION
-) -> Found:
+) -> DeclaredEffects:
     """Return what a section ``effects`` says, of all effects that are known by their ids."""
-    declared_effects = Found(n_cables, section)
+    declared_effects = DeclaredEffects(n_cables, section)
     for effect_id, content in data.items() if isinstance(data, dict) else ():
         effect = effects_by_id.get(effect_id)
         if effect is None:
@@ -59,7 +59,7 @@ def read_effects(
     return declared_effects
 
 
-def _read_all(declared_effects: Found, effect: Effect, data: Data) -> None:
+def _read_all(declared_effects: DeclaredEffects, effect: Effect, data: Data) -> None:
     place: Keys = (*declared_effects.section, effect.id)
     if not effect.takes_cable or not isinstance(data, list):
         _read_one(declared_effects, effect, place, data)
@@ -79,7 +79,7 @@ def _read_all(declared_effects: Found, effect: Effect, data: Data) -> None:
             seen.add(declared.cable)
 
 
-def _read_one(declared_effects: Found, effect: Effect, place: Keys, data: Data) -> None:
+def _read_one(declared_effects: DeclaredEffects, effect: Effect, place: Keys, data: Data) -> None:
     parameters = effect.parameters_for(declared_effects.n_cables)
     keys = ["cable"] * effect.takes_cable + [parameter.name for parameter in parameters]
     if not isinstance(data, dict) or not data:
@@ -114,7 +114,10 @@ def _read_one(declared_effects: Found, effect: Effect, place: Keys, data: Data) 
 
 
 def _value(
-    declared_effects: Found, place: Keys, content: Mapping[str, Data], parameter: Parameter
+    declared_effects: DeclaredEffects,
+    place: Keys,
+    content: Mapping[str, Data],
+    parameter: Parameter,
 ) -> float:
     if parameter.name not in content:
         if not parameter.is_optional:
@@ -131,4 +134,4 @@ def field_of(parameter: Parameter) -> QuantityField:
 
 
 def _listed(keys: list[str]) -> str:
-    return ", ".join(keys) if len(keys) <= _MOST_LISTED else f"{keys[0]} … {keys[-1]}"
+    return ", ".join(keys) if len(keys) <= _MAX_LISTED else f"{keys[0]} … {keys[-1]}"

@@ -10,7 +10,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from designer.documents.bounds import MOST_CABLES
+from designer.documents.bounds import MAX_CABLES
 from designer.documents.fields import JsonSchema, WholeNumber, words_at
 from designer.effects.effect import Effect
 from designer.io.config.effects import field_of
@@ -35,9 +35,9 @@ def study_schema(effects: Mapping[str, Effect]) -> JsonSchema:
     generated: JsonSchema = StudySection.model_json_schema()
     sections = generated.pop("$defs")
     for section in _SHORTHANDS:
-        whole = sections[section.__name__]
-        shorthand = _without(next(iter(whole["properties"].values())), "expected")
-        sections[section.__name__] = {"anyOf": [shorthand, whole]}
+        mapping = sections[section.__name__]
+        shorthand = _without(next(iter(mapping["properties"].values())), "expected")
+        sections[section.__name__] = {"anyOf": [shorthand, mapping]}
     schema: JsonSchema = _plain(generated, sections)
     schema["properties"]["effects"] = {
         "type": ["object", "null"],
@@ -113,7 +113,7 @@ def _effect(effect: Effect) -> JsonSchema:
     words = {"title": summary, "description": f"{effect.law} ({effect.source})"}
     if not effect.takes_cable:
         return json_schema | words
-    json_schema["properties"]["cable"] = WholeNumber(1, MOST_CABLES).json_schema()
+    json_schema["properties"]["cable"] = WholeNumber(1, MAX_CABLES).json_schema()
     json_schema["required"].append("cable")
     return {"anyOf": [json_schema, {"type": "array", "items": json_schema, "minItems": 1}], **words}
 

@@ -27,7 +27,7 @@ from scipy.spatial.transform import Rotation as SpatialRotation
 
 from designer.arrays import FloatArray, frozen_array
 from designer.documents import fields
-from designer.documents.bounds import MOST_CABLES
+from designer.documents.bounds import MAX_CABLES
 from designer.documents.fields import (
     Rotation,
     Section,
@@ -35,17 +35,19 @@ from designer.documents.fields import (
     Turn,
     WholeNumber,
     bounded,
+    by_list,
+    by_word,
     config_field,
     list_of,
     only_word,
     refusal,
 )
 from designer.model.cable import Attached, AttachedEach
-from designer.model.load_case import MOST_WRENCHES, Ice, LoadCase, Wind, WrenchSet
+from designer.model.load_case import MAX_WRENCHES, Ice, LoadCase, Wind, WrenchSet
 from designer.model.region import PointList, Prism, Rectangle, Region
 from designer.model.robot import Platform, Robot
 from designer.model.space import Orientations
-from designer.model.winches import DEAD_TURNS, MOST_LAYERS, ROPE_OVERSIZE, Drum, Winches
+from designer.model.winches import DEAD_TURNS, MAX_LAYERS, ROPE_OVERSIZE, Drum, Winches
 from designer.units import describe
 
 FORMS = ("rotation_vector", "quaternion", "euler")
@@ -121,8 +123,8 @@ class OrientationSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_list(cls, given: object) -> object:
-        return {"rotation_vector": given} if isinstance(given, list) else only_one_of(given)
+    def _from_list(cls, raw: object) -> object:
+        return {"rotation_vector": raw} if isinstance(raw, list) else only_one_of(raw)
 
     def __str__(self) -> str:
         """Return the rotation vector with its unit, for the table of inputs."""
@@ -147,11 +149,11 @@ class FollowingSection(OrientationSection):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_list(cls, given: object) -> object:
-        if isinstance(given, dict) and given.get("axis") and not given.get("toward"):
+    def _from_list(cls, raw: object) -> object:
+        if isinstance(raw, dict) and raw.get("axis") and not raw.get("toward"):
             raise refusal("the axis has nothing to face", "toward: [x, y, z] beside it")
         forms = (*FORMS, "toward", "table")
-        return {"rotation_vector": given} if isinstance(given, list) else only_one_of(given, forms)
+        return {"rotation_vector": raw} if isinstance(raw, list) else only_one_of(raw, forms)
 
 
 class OrientationRangeSection(Section):
@@ -204,20 +206,15 @@ Box = Annotated[
 ]
 
 
-def word_or_list(value: object) -> str:
-    """Return the tag of a value that may be a word or a list."""
-    return "a word" if isinstance(value, str) else "a list"
-
-
 PrismBase = Annotated[
     Annotated[Literal["anchors"], only_word("anchors", _CORNERS), Tag("a word")]
     | Annotated[Corners, Tag("a list")],
-    Discriminator(word_or_list),
+    by_word("a list"),
 ]
 RectangleBase = Annotated[
     Annotated[Literal["anchors"], only_word("anchors", _ENDS), Tag("a word")]
     | Annotated[Ends, Tag("a list")],
-    Discriminator(word_or_list),
+    by_word("a list"),
 ]
 
 
@@ -322,12 +319,12 @@ AnyRegion = Annotated[
     | Annotated[BoxSection, Tag("box region")]
     | Annotated[PointsSection, Tag("points region")]
     | Annotated[RectangleSection, Tag("rectangle region")],
-    Discriminator(lambda given: f"{_kinds_named(given)[0]} region"),
+    Discriminator(lambda raw: f"{_kinds_named(raw)[0]} region"),
     BeforeValidator(_of_one_kind),
 ]
 
 
-_points = list_of(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
+_points = list_of(2, MAX_CABLES, f"3 to {MAX_CABLES} points [x, y, z], 2 in a plane")
 
 Anchors = Annotated[tuple[fields.Point, ...], _points]
 WinchPositions = Annotated[tuple[fields.Point, ...], _points]
@@ -446,24 +443,22 @@ ConfiguredTensionMax = Annotated[
     Annotated[fields.BreakingLoad, Tag("of all winches")]
     | Annotated[
         tuple[fields.BreakingLoad | None, ...],
-        list_of(2, MOST_CABLES, "one for each cable, null for no limit"),
+        list_of(2, MAX_CABLES, "one for each cable, null for no limit"),
         Tag("of each winch"),
     ],
-    Discriminator(
-        lambda given: "of each winch" if isinstance(given, list | tuple) else "of all winches"
-    ),
+    by_list("of each winch", "of all winches"),
 ]
 
 
 def tension_max_each(
-    given: float | tuple[float | None, ...] | None,
+    raw: float | tuple[float | None, ...] | None,
 ) -> FloatArray | float | None:
     """Return the largest tension of all winches, or of each where they differ [N]."""
-    if not isinstance(given, tuple):
-        return given
-    if len(set(given)) == 1:
-        return given[0]
-    return frozen_array([np.inf if largest is None else largest for largest in given])
+    if not isinstance(raw, tuple):
+        return raw
+    if len(set(raw)) == 1:
+        return raw[0]
+    return frozen_array([np.inf if largest is None else largest for largest in raw])
 
 
 class WinchesSection(Section):
@@ -482,7 +477,7 @@ class WinchesSection(Section):
 
     drum_diameter: fields.SheaveDiameter | None = config_field("Drum of a winch")
     """Diameter of the drum at the bottom of its grooves."""
-    layers: Annotated[int, WholeNumber(1, MOST_LAYERS)] = config_field("Layers on the drum", 1)
+    layers: Annotated[int, WholeNumber(1, MAX_LAYERS)] = config_field("Layers on the drum", 1)
     """Layers of rope on the drum at most; torque is that on the outermost."""
     gear_ratio: fields.GearRatio = config_field("Gear ratio", 1.0)
     """Turns of the motor for one of the drum."""
@@ -544,26 +539,24 @@ class AttachedSection(Section):
 
 
 def attached_each(
-    given: AttachedSection | tuple[AttachedSection | None, ...] | None,
+    raw: AttachedSection | tuple[AttachedSection | None, ...] | None,
 ) -> AttachedEach:
     """Return what is attached to each cable; one entry where all are alike, none of nothing."""
-    sections = given if isinstance(given, tuple) else (given,)
-    each = tuple(Attached() if section is None else section.attached for section in sections)
-    if len(set(each)) > 1:
-        return each
-    return each[:1] if each[0] != Attached() else ()
+    sections = raw if isinstance(raw, tuple) else (raw,)
+    lines = tuple(Attached() if section is None else section.attached for section in sections)
+    if len(set(lines)) > 1:
+        return lines
+    return lines[:1] if lines[0] != Attached() else ()
 
 
 ConfiguredAttached = Annotated[
     Annotated[AttachedSection, Tag("along all cables")]
     | Annotated[
         tuple[AttachedSection | None, ...],
-        list_of(2, MOST_CABLES, "one for each cable, null for nothing"),
+        list_of(2, MAX_CABLES, "one for each cable, null for nothing"),
         Tag("along each cable"),
     ],
-    Discriminator(
-        lambda given: "along each cable" if isinstance(given, list | tuple) else "along all cables"
-    ),
+    by_list("along each cable", "along all cables"),
 ]
 
 
@@ -654,14 +647,14 @@ ConfiguredCable = Annotated[
 
 LostCable = Annotated[
     Annotated[Literal["each"], only_word("each", "'each' or the number of a cable"), Tag("a word")]
-    | Annotated[int, WholeNumber(1, MOST_CABLES), Tag("a number")],
-    Discriminator(lambda given: "a word" if isinstance(given, str) else "a number"),
+    | Annotated[int, WholeNumber(1, MAX_CABLES), Tag("a number")],
+    by_word("a number"),
 ]
 
 Directions = Annotated[
     Annotated[Literal["all"], only_word("all", "'all' or a number of directions"), Tag("a word")]
     | Annotated[int, WholeNumber(1, 72), Tag("a number")],
-    Discriminator(lambda given: "a word" if isinstance(given, str) else "a number"),
+    by_word("a number"),
 ]
 
 
@@ -733,22 +726,22 @@ ConfiguredWrenchSet = Annotated[
     Annotated[WrenchBoxSection, Tag("a box")]
     | Annotated[
         tuple[ListedWrenchSection, ...],
-        list_of(1, MOST_WRENCHES, f"1 to {MOST_WRENCHES} wrenches {{force: …, moment: …}}"),
+        list_of(1, MAX_WRENCHES, f"1 to {MAX_WRENCHES} wrenches {{force: …, moment: …}}"),
         Tag("a list"),
     ],
-    Discriminator(lambda given: "a list" if isinstance(given, list | tuple) else "a box"),
+    by_list("a list", "a box"),
 ]
 
 
 def wrench_set_of(
-    given: WrenchBoxSection | tuple[ListedWrenchSection, ...] | None,
+    raw: WrenchBoxSection | tuple[ListedWrenchSection, ...] | None,
 ) -> WrenchSet | None:
     """Return the wrenches of a load case."""
-    if given is None:
+    if raw is None:
         return None
-    if isinstance(given, WrenchBoxSection):
-        return WrenchSet.between(*frozen_array([*given.force, *given.moment]).T)
-    return WrenchSet(frozen_array([section.wrench_N for section in given]))
+    if isinstance(raw, WrenchBoxSection):
+        return WrenchSet.between(*frozen_array([*raw.force, *raw.moment]).T)
+    return WrenchSet(frozen_array([section.wrench_N for section in raw]))
 
 
 class LoadCaseSection(Section):

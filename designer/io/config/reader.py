@@ -30,18 +30,231 @@ from designer.io.config.schema import (
 from designer.io.poses import TIME, PoseTable, path_faults, read_poses
 from designer.io.prices import read_prices
 from designer.model.cable import Material, PriceList
-from designer.model.load_case import MOST_DIRECTIONS, LoadCase
+from designer.model.load_case import MAX_DIRECTIONS, LoadCase
 from designer.model.motion import Motion, limited, timed
 from designer.model.region import PointList, Region
 from designer.model.robot import Robot, Surroundings
-from designer.model.space import EachPose, Orientations, Toward, TurnTable
+from designer.model.space import ListedOrientations, Orientations, OrientationTable, Toward
 from designer.model.workspace import Workspace
 from designer.plugins import Plugins, find_plugins
 from designer.study import DeclaredEffect, Entry, GradeFamily, Study, StudySource
 from designer.units import DENSITY, NUMBER, STRESS, Dimension, format_SI
-from designer.workspace.best_turns import BestTurns
+from designer.workspace.best_orientations import BestOrientations
 
 Listed = tuple[Region, Orientations]
+DEFAULT = "default"
+_PATH = ("workspace", "path")
+MAX_ROWS = 1000
+"""Of a table of orientations: each costs time at every pose."""
+_MAX_ROWS = 64
+"""Of a list in the table of inputs."""
+
+
+def read_study(
+    path: Path, known_effects: KnownEffects | None = None, plugins: Plugins | None = None
+) -> Study:
+    """Return the study that the config file describes.
+
+    Parameters
+    ----------
+    path : Path
+        A YAML file.
+    known_effects : KnownEffects or None
+        Which effects it may declare; None for ours alone, without those of plugins.
+    plugins : Plugins or None
+        Whose grades ``cable`` may name; None for ours and those that the file itself adds.
+
+    Raises
+    ------
+    designer.errors.InputError
+        If anything is wrong with it; carries every fault, a hundred at most, in the order of the
+        lines.
+    """
+    known, document = known_effects or SHIPPED, read_document(path)
+    return study_of(checked(document, known), document, path, known, plugins)
+
+
+def study_of(
+    section: StudySection,
+    document: Document,
+    path: Path,
+    known: KnownEffects,
+    plugins: Plugins | None = None,
+) -> Study:
+    """Return the study of a document, `checked`, that lies, or is to lie, at a path.
+
+    Raises
+    ------
+    InputError
+        If its cable is of a grade that there is not, or that lacks figures.
+    """
+    folder, robot = path.parent, section.robot.robot()
+    if section.name is None:
+        section = section.model_copy(update={"name": path.stem})
+    material, family = _material_and_family(section, document, plugins)
+    entries = all_entries(section, document.root)
+    declared = read_effects(section.effects, robot.n_cables, known.by_id).effects
+    entries += _effect_entries(declared, document.root, known, robot.n_cables)
+    of_sessions = _session_effects(section, robot.n_cables, known)
+    for declared_there in of_sessions:
+        entries += _effect_entries(declared_there, document.root, known, robot.n_cables)
+    pose, selection = section.pose, section.selection
+    places = places_of(section, document, robot, material)
+    if places.motion is not None:
+        robot = replace(robot, platform=replace(robot.platform, motion=places.motion))
+    price_list, tables = _price_list(section, document)
+    measurements, uncertainty = section.measurements, section.uncertainty
+    lines = {path_text(keys): node.line for keys, node in document.root.walk()}
+    inputs = _with_family(tuple(entries), material, family)
+    # A member of the family bears at the drum what its stress allows, and less at the exit point.
+    efficiency = robot.winches.reeving_efficiency
+    material = replace(material, allowable_stress_Pa=efficiency * material.allowable_stress_Pa)
+    return Study(
+        name=section.name or path.stem,
+        robot=robot,
+        material=material,
+        source=StudySource(path, document.sha256, inputs, lines, (*places.tables, *tables)),
+        pose=None if pose is None else pose.poses(),
+        workspace=places.workspace,
+        selection=None if selection is None else selection.selection(price_list, inputs),
+        load_cases=tuple(
+            _load_case(document, index, robot, section, places)
+            for index in range(len(section.load_cases))
+        ),
+        catalogues=tuple(folder / name for name in section.catalogues),
+        measurements=None if measurements is None else measurements.measurements(folder),
+        uncertainty=None if uncertainty is None else uncertainty.value(),
+        effects=tuple(effect for _, effect in declared),
+        session_effects=tuple(
+            tuple(effect for _, effect in declared_there) for declared_there in of_sessions
+        ),
+        known_effects=known,
+        surroundings=Surroundings(section.surroundings.temperature),
+        family=family,
+        document=section.document.control(folder),
+    )
+
+
+def _price_list(
+    section: StudySection, document: Document
+) -> tuple[PriceList | None, tuple[tuple[str, str], ...]]:
+    """Return the price list that a study names, if any, and the name and digest of its file."""
+    name = section.selection.prices if section.selection else None
+    if name is None:
+        return None, ()
+
+    def error(problem: str, expected: str) -> InputError:
+        return InputError([document.fault(("selection", "prices"), problem, expected)])
+
+    price_list, sha256 = read_prices(Path(document.name).parent / name, error)
+    return price_list, ((name, sha256),)
+
+
+def _session_effects(
+    section: StudySection, n_cables: int, known: KnownEffects
+) -> list[list[tuple[Keys, DeclaredEffect]]]:
+    """Return what is declared of each session of the measurements, each effect with its place."""
+    sessions = section.measurements.sessions if section.measurements else None
+    place: Keys = ("measurements", "sessions")
+    return [
+        read_effects(session.effects, n_cables, known.by_id, (*place, number, "effects")).effects
+        for number, session in enumerate(sessions or ())
+    ]
+
+
+def _material_and_family(
+    section: StudySection, document: Document, plugins: Plugins | None
+) -> tuple[Material, GradeFamily | None]:
+    """Return the material, and the grade it is of; its safety factor may be the selection's."""
+    cable = section.cable
+    if isinstance(cable, CableSection):
+        return Material(cable.density, cable.youngs_modulus, cable.allowable_stress), None
+    from designer.grades.registry import cached_catalogue  # most studies name no grade
+
+    usual = (section.selection or SelectionSection()).safety_factor
+    family = GradeFamily(cable.grade, cable.safety_factor or usual)
+    files = [Path(document.name).parent / name for name in section.catalogues]
+    catalogue = cached_catalogue(
+        [file for file in files if file.exists()], plugins or find_plugins(with_plugins=False)
+    )
+    grade = next((grade for grade in catalogue.grades if grade.id == cable.grade), None)
+    if grade is None:
+        why = catalogue.explain_unknown(cable.grade)
+    else:
+        try:
+            return grade.family(family.safety_factor), family
+        except ValueError as error:  # a grade made in Python may lack stiffness or area
+            problem = f"cannot stand for a family: {error}"
+            why = problem, "a grade with breaking load, mass and stiffness"
+    raise InputError([document.fault(("cable", "grade"), *why)])
+
+
+def _with_family(
+    entries: tuple[Entry, ...], material: Material, family: GradeFamily | None
+) -> tuple[Entry, ...]:
+    """Return the table of inputs with what a grade stands for."""
+    if family is None:
+        return entries
+    meaning = {
+        "cable.grade": (
+            f"{format_SI(float(material.density_kg_per_m3), DENSITY)}, "
+            f"modulus {format_SI(material.youngs_modulus_Pa, STRESS)}, "
+            f"allowable {format_SI(material.allowable_stress_Pa, STRESS)}, on the nominal circle"
+        ),
+        "cable.safety_factor": f"{family.safety_factor:g}",
+    }
+    return tuple(replace(e, value_SI=meaning.get(e.field, e.value_SI)) for e in entries)
+
+
+def _load_case(
+    document: Document, index: int, robot: Robot, study: StudySection, places: Places
+) -> LoadCase:
+    """Return a load case; a fault where its loads are too many to solve all of them."""
+    section = study.load_cases[index]
+    case_places = _case_places(document, index, robot, section, places)
+    case = section.load_case(study.cable, *case_places)
+    count = case.direction_count(robot)
+    if case.wrench_set is None or count <= MAX_DIRECTIONS:
+        return case
+    of_set = len(case.wrench_set.wrenches_N)
+    problem = f"{of_set} wrenches in {count // of_set} directions of wind, inertia and loss"
+    expected = f"{MAX_DIRECTIONS} loads at most, not {count}"
+    raise InputError([document.fault(("load_cases", index, "wrench_set"), problem, expected)])
+
+
+def _case_places(
+    document: Document, index: int, robot: Robot, section: LoadCaseSection, places: Places
+) -> tuple[Region | None, Orientations | None]:
+    """Return the region of a load case, and orientations that belong to it; None for the study's.
+
+    A fault where nothing is left of it, or a list has poses for the case as well.
+    """
+    of_list = places.of_cases.get(section.name, (None, None))
+    if section.region is None:
+        return of_list
+    if of_list[0] is not None or places.are_turned_one_by_one:
+        problem = "the list of workspace.poses says where the platform is, and how it is turned"
+        expected = "poses of that list for this load case, in its column load_case"
+        raise InputError([document.fault(("load_cases", index, "region"), problem, expected)])
+    try:
+        return section.region.over(robot.exit_points_m), None
+    except ValueError as error:  # QhullError is one
+        place = ("load_cases", index, "region")
+        raise InputError([document.fault(place, str(error), "a region that has a size")]) from None
+
+
+def checked(document: Document, known: KnownEffects) -> StudySection:
+    """Return what the document holds by the schema; `InputError` with all faults otherwise."""
+    faults = [*document.faults, *all_faults(document, known.by_id)]
+    section = None
+    try:
+        section = StudySection.model_validate(document.root.data())
+    except ValidationError as error:
+        faults += schema_faults(error, document, StudySection)
+    if section is None or faults:
+        faults.sort(key=lambda fault: (fault.line or 0, fault.field))
+        raise InputError(faults[:MOST_FAULTS])
+    return section
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +274,7 @@ class Places:
     def are_turned_one_by_one(self) -> bool:
         """Whether only listed poses have an orientation."""
         law = None if self.workspace is None else self.workspace.orientations.law
-        return isinstance(law, EachPose)
+        return isinstance(law, ListedOrientations)
 
 
 def places_of(
@@ -77,7 +290,7 @@ def places_of(
     workspace = section.workspace
     if workspace is None:
         return Places(None)
-    build = _Places(document, robot, material)
+    build = _PlacesBuilder(document, robot, material)
     if workspace.path is not None:
         places = build.along_path(section, workspace.path)
     elif workspace.region is None:
@@ -89,7 +302,7 @@ def places_of(
 
 
 @dataclass(frozen=True, slots=True)
-class _Places:
+class _PlacesBuilder:
     document: Document
     robot: Robot
     material: Material
@@ -109,7 +322,7 @@ class _Places:
         single, free = section.orientation, section.orientation_free
         if free is not None:
             ends = frozen_array(free.bounds_rad)
-            law = BestTurns(self.robot, self.material, region, ends, section.hangs_below)
+            law = BestOrientations(self.robot, self.material, region, ends, section.hangs_below)
             return Orientations(law=law)
         if single is not None and single.toward is not None:
             return Orientations(law=Toward(frozen_array(single.toward), frozen_array(single.axis)))
@@ -117,19 +330,19 @@ class _Places:
             return Orientations(law=self._turn_table(single.table))
         return section.fixed_orientations()
 
-    def _turn_table(self, name: str) -> TurnTable:
+    def _turn_table(self, name: str) -> OrientationTable:
         keys = ("workspace", "orientation", "table")
         places = self._table(keys, name).places
         if places.shape[1] < 6:
             expected = "the columns rx_rad, ry_rad and rz_rad"
             raise self._error(keys, f"{name} has no orientations", expected)
-        if len(places) > MOST_ROWS:
-            raise self._error(keys, f"{name} has {len(places)} rows", f"at most {MOST_ROWS}")
+        if len(places) > MAX_ROWS:
+            raise self._error(keys, f"{name} has {len(places)} rows", f"at most {MAX_ROWS}")
         if len(np.unique(places[:, :3], axis=0)) < len(places):
             problem = f"{name} has a position in two rows"
             raise self._error(keys, problem, "one orientation for each position")
         position_m, turn_rad = (frozen_array(part) for part in np.hsplit(places, 2))
-        return TurnTable(position_m, turn_rad, name)
+        return OrientationTable(position_m, turn_rad, name)
 
     def listed(self, section: WorkspaceSection, cases: list[str]) -> Places:
         """Return a list of poses, and what of it is for one load case alone."""
@@ -193,8 +406,8 @@ class _Places:
         """Refuse a path that turns a platform whose inertia is not known in every load case."""
         problem, expected = f"{name} turns the platform", "moments of inertia [xx, yy, zz]"
         if self.robot.platform.inertia_kg_m2 is None:
-            where = ("robot", "platform")
-            raise self._error(where, f"inertia is missing, and {problem}", f"inertia: {expected}")
+            missing = f"inertia is missing, and {problem}"
+            raise self._error(("robot", "platform"), missing, f"inertia: {expected}")
         for index, case in enumerate(section.load_cases):
             if case.mass is not None and case.inertia is None:
                 keys = ("load_cases", index, "mass")
@@ -229,223 +442,9 @@ class _Places:
         if not turns.size:
             return region, self.orientations(section, region)
         is_level = not turns.any()
-        return region, Orientations(law=None if is_level else EachPose.of(positions, turns))
-
-
-_PATH = ("workspace", "path")
-MOST_ROWS = 1000
-"""Of a table of orientations: each costs time at every pose."""
-
-
-def read_study(
-    path: Path, known_effects: KnownEffects | None = None, plugins: Plugins | None = None
-) -> Study:
-    """Return the study that the config file describes.
-
-    Parameters
-    ----------
-    path : Path
-        A YAML file.
-    known_effects : KnownEffects or None
-        Which effects it may declare; None for ours alone, without those of plugins.
-    plugins : Plugins or None
-        Whose grades ``cable`` may name; None for ours and those that the file itself adds.
-
-    Raises
-    ------
-    designer.errors.InputError
-        If anything is wrong with it; carries every fault, a hundred at most, in the order of the
-        lines.
-    """
-    known, document = known_effects or SHIPPED, read_document(path)
-    return study_of(checked(document, known), document, path, known, plugins)
-
-
-def study_of(
-    section: StudySection,
-    document: Document,
-    path: Path,
-    known: KnownEffects,
-    plugins: Plugins | None = None,
-) -> Study:
-    """Return the study of a document, `checked`, that lies, or is to lie, at a path.
-
-    Raises
-    ------
-    InputError
-        If its cable is of a grade that there is not, or that lacks figures.
-    """
-    folder, robot = path.parent, section.robot.robot()
-    if section.name is None:
-        section = section.model_copy(update={"name": path.stem})
-    material, family = _material_and_family(section, document, plugins)
-    entries = all_entries(section, document.root)
-    declared = read_effects(section.effects, robot.n_cables, known.by_id).effects
-    entries += _effect_entries(declared, document.root, known, robot.n_cables)
-    of_sessions = _session_effects(section, robot.n_cables, known)
-    for declared_there in of_sessions:
-        entries += _effect_entries(declared_there, document.root, known, robot.n_cables)
-    pose, selection = section.pose, section.selection
-    places = places_of(section, document, robot, material)
-    if places.motion is not None:
-        robot = replace(robot, platform=replace(robot.platform, motion=places.motion))
-    price_list, tables = _price_list(section, document)
-    measurements, uncertainty = section.measurements, section.uncertainty
-    lines = {path_text(keys): node.line for keys, node in document.root.walk()}
-    given = _with_family(tuple(entries), material, family)
-    # A member of the family bears at the drum what its stress allows, and less at the exit point.
-    kept = robot.winches.reeving_efficiency
-    material = replace(material, allowable_stress_Pa=kept * material.allowable_stress_Pa)
-    return Study(
-        name=section.name or path.stem,
-        robot=robot,
-        material=material,
-        source=StudySource(path, document.sha256, given, lines, (*places.tables, *tables)),
-        pose=None if pose is None else pose.poses(),
-        workspace=places.workspace,
-        selection=None if selection is None else selection.selection(price_list, given),
-        load_cases=tuple(
-            _load_case(document, index, robot, section, places)
-            for index in range(len(section.load_cases))
-        ),
-        catalogues=tuple(folder / name for name in section.catalogues),
-        measurements=None if measurements is None else measurements.measurements(folder),
-        uncertainty=None if uncertainty is None else uncertainty.value(),
-        effects=tuple(effect for _, effect in declared),
-        session_effects=tuple(
-            tuple(effect for _, effect in declared_there) for declared_there in of_sessions
-        ),
-        known_effects=known,
-        surroundings=Surroundings(section.surroundings.temperature),
-        family=family,
-        document=section.document.control(folder),
-    )
-
-
-def _price_list(
-    section: StudySection, document: Document
-) -> tuple[PriceList | None, tuple[tuple[str, str], ...]]:
-    """Return the price list that a study names, if any, and the name and digest of its file."""
-    name = section.selection.prices if section.selection else None
-    if name is None:
-        return None, ()
-
-    def error(problem: str, expected: str) -> InputError:
-        return InputError([document.fault(("selection", "prices"), problem, expected)])
-
-    price_list, sha256 = read_prices(Path(document.name).parent / name, error)
-    return price_list, ((name, sha256),)
-
-
-def _session_effects(
-    section: StudySection, n_cables: int, known: KnownEffects
-) -> list[list[tuple[Keys, DeclaredEffect]]]:
-    """Return what is declared of each session of the measurements, each effect with its place."""
-    sessions = section.measurements.sessions if section.measurements else None
-    place: Keys = ("measurements", "sessions")
-    return [
-        read_effects(each.effects, n_cables, known.by_id, (*place, number, "effects")).effects
-        for number, each in enumerate(sessions or ())
-    ]
-
-
-def _material_and_family(
-    section: StudySection, document: Document, plugins: Plugins | None
-) -> tuple[Material, GradeFamily | None]:
-    """Return the material, and the grade it is of; its safety factor may be the selection's."""
-    cable = section.cable
-    if isinstance(cable, CableSection):
-        return Material(cable.density, cable.youngs_modulus, cable.allowable_stress), None
-    from designer.grades.registry import kept_catalogue  # most studies name no grade
-
-    usual = (section.selection or SelectionSection()).safety_factor
-    family = GradeFamily(cable.grade, cable.safety_factor or usual)
-    files = [Path(document.name).parent / name for name in section.catalogues]
-    catalogue = kept_catalogue(
-        [file for file in files if file.exists()], plugins or find_plugins(with_plugins=False)
-    )
-    grade = next((grade for grade in catalogue.grades if grade.id == cable.grade), None)
-    if grade is None:
-        why = catalogue.explain_unknown(cable.grade)
-    else:
-        try:
-            return grade.family(family.safety_factor), family
-        except ValueError as error:  # a grade made in Python may lack stiffness or area
-            problem = f"cannot stand for a family: {error}"
-            why = problem, "a grade with breaking load, mass and stiffness"
-    raise InputError([document.fault(("cable", "grade"), *why)])
-
-
-def _with_family(
-    entries: tuple[Entry, ...], material: Material, family: GradeFamily | None
-) -> tuple[Entry, ...]:
-    """Return the table of inputs with what a grade stands for."""
-    if family is None:
-        return entries
-    meaning = {
-        "cable.grade": (
-            f"{format_SI(float(material.density_kg_per_m3), DENSITY)}, "
-            f"modulus {format_SI(material.youngs_modulus_Pa, STRESS)}, "
-            f"allowable {format_SI(material.allowable_stress_Pa, STRESS)}, on the nominal circle"
-        ),
-        "cable.safety_factor": f"{family.safety_factor:g}",
-    }
-    return tuple(replace(e, value_SI=meaning.get(e.field, e.value_SI)) for e in entries)
-
-
-def _load_case(
-    document: Document, index: int, robot: Robot, study: StudySection, places: Places
-) -> LoadCase:
-    """Return a load case; a fault where its loads are too many to solve all of them."""
-    section = study.load_cases[index]
-    case_places = _case_places(document, index, robot, section, places)
-    case = section.load_case(study.cable, *case_places)
-    count = case.direction_count(robot)
-    if case.wrench_set is None or count <= MOST_DIRECTIONS:
-        return case
-    of_set = len(case.wrench_set.wrenches_N)
-    problem = f"{of_set} wrenches in {count // of_set} directions of wind, inertia and loss"
-    expected = f"{MOST_DIRECTIONS} loads at most, not {count}"
-    raise InputError([document.fault(("load_cases", index, "wrench_set"), problem, expected)])
-
-
-def _case_places(
-    document: Document, index: int, robot: Robot, section: LoadCaseSection, places: Places
-) -> tuple[Region | None, Orientations | None]:
-    """Return the region of a load case, and orientations that belong to it; None for the study's.
-
-    A fault where nothing is left of it, or a list has poses for the case as well.
-    """
-    of_list = places.of_cases.get(section.name, (None, None))
-    if section.region is None:
-        return of_list
-    if of_list[0] is not None or places.are_turned_one_by_one:
-        problem = "the list of workspace.poses says where the platform is, and how it is turned"
-        expected = "poses of that list for this load case, in its column load_case"
-        raise InputError([document.fault(("load_cases", index, "region"), problem, expected)])
-    try:
-        return section.region.over(robot.exit_points_m), None
-    except ValueError as error:  # QhullError is one
-        place = ("load_cases", index, "region")
-        raise InputError([document.fault(place, str(error), "a region that has a size")]) from None
-
-
-def checked(document: Document, known: KnownEffects) -> StudySection:
-    """Return what the document holds by the schema; `InputError` with all faults otherwise."""
-    faults = [*document.faults, *all_faults(document, known.by_id)]
-    section = None
-    try:
-        section = StudySection.model_validate(document.root.data())
-    except ValidationError as error:
-        faults += schema_faults(error, document, StudySection)
-    if section is None or faults:
-        faults.sort(key=lambda fault: (fault.line or 0, fault.field))
-        raise InputError(faults[:MOST_FAULTS])
-    return section
-
-
-DEFAULT = "default"
-_MOST_ROWS = 64
+        return region, Orientations(
+            law=None if is_level else ListedOrientations.of(positions, turns)
+        )
 
 
 def all_entries(section: BaseModel, node: Node | None, place: tuple[Key, ...] = ()) -> list[Entry]:
@@ -507,7 +506,7 @@ def _entries(
                 yield Entry(path_text((*place, name)), as_given(node.child(name)), item.meaning)
     elif not (isinstance(value, tuple) and value and isinstance(value[0], tuple)):
         yield Entry(path_text(place), node.as_written(), _in_SI(value, dimension))
-    elif len(value) > _MOST_ROWS:
+    elif len(value) > _MAX_ROWS:
         ends = f"{_in_SI(value[0], dimension)} … {_in_SI(value[-1], dimension)}"
         yield Entry(path_text(place), f"{len(value)} rows", ends)
     else:

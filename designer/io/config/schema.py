@@ -15,7 +15,6 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import (
     AfterValidator,
     BeforeValidator,
-    Discriminator,
     Field,
     StrictBool,
     Tag,
@@ -24,7 +23,7 @@ from pydantic import (
 
 from designer.arrays import FloatArray, frozen_array
 from designer.documents import fields
-from designer.documents.bounds import MOST_CABLES, MOST_SAMPLES
+from designer.documents.bounds import MAX_CABLES, MOST_SAMPLES
 from designer.documents.fields import (
     Section,
     Text,
@@ -51,7 +50,6 @@ from designer.io.config.machine import (
     RobotSection,
     only_one_of,
     rotation_vector_rad,
-    word_or_list,
 )
 from designer.measured.assign import COVARIATE, IGNORE, column_hint, dimension_of
 from designer.model.cable import MaterialName, Preference, PriceList, Trust
@@ -169,10 +167,6 @@ def _rising(ends: tuple[float, float]) -> tuple[float, float]:
     return ends
 
 
-def _tag(value: object) -> str:
-    return "ends" if isinstance(value, list | tuple) else "a half width"
-
-
 RelativeEnds = Annotated[
     tuple[Annotated[float, bounded("deviation")], Annotated[float, bounded("deviation")]],
     list_of(2, 2, _ENDS),
@@ -186,12 +180,12 @@ PointEnds = Annotated[
 Width = Annotated[
     Annotated[float, bounded("half width"), Tag("a half width")]
     | Annotated[RelativeEnds, Tag("ends")],
-    Discriminator(_tag),
+    fields.by_list("ends", "a half width"),
 ]
 WidthOfPoint = Annotated[
     Annotated[float, bounded("scatter of points"), Tag("a half width")]
     | Annotated[PointEnds, Tag("ends")],
-    Discriminator(_tag),
+    fields.by_list("ends", "a half width"),
 ]
 
 
@@ -208,18 +202,18 @@ class SpreadSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _is_one_distribution(cls, given: object) -> object:
+    def _is_one_distribution(cls, raw: object) -> object:
         expected = f"{{standard_deviation: {cls.example}}} for a normal distribution, or "
         expected += f"{{uniform: {cls.example}}}"
-        if not isinstance(given, dict):
-            raise refusal(f"{describe(given)} is not a distribution", expected)
-        unknown = [name for name in given if name not in cls.model_fields]
+        if not isinstance(raw, dict):
+            raise refusal(f"{describe(raw)} is not a distribution", expected)
+        unknown = [name for name in raw if name not in cls.model_fields]
         if unknown:
             raise refusal(f"the distribution {describe(unknown[0])} is not known", expected)
-        count = sum(value is not None for value in given.values())
+        count = sum(value is not None for value in raw.values())
         if count != 1:
             raise refusal(f"names {'two distributions' if count else 'no distribution'}", expected)
-        return given
+        return raw
 
     def value(self) -> Spread:
         """Return the distribution."""
@@ -294,11 +288,11 @@ Files = Annotated[
     | Annotated[
         Annotated[tuple[fields.Text, ...], fields.list_of(1, 100, "a list of files")], Tag("files")
     ],
-    Discriminator(lambda given: "files" if isinstance(given, list | tuple) else "a file"),
+    fields.by_list("files", "a file"),
 ]
 CableNumbers = Annotated[
-    tuple[Annotated[int, fields.WholeNumber(1, MOST_CABLES)], ...],
-    fields.list_of(1, MOST_CABLES, "a list of one or more cable numbers, such as [1, 2]"),
+    tuple[Annotated[int, fields.WholeNumber(1, MAX_CABLES)], ...],
+    fields.list_of(1, MAX_CABLES, "a list of one or more cable numbers, such as [1, 2]"),
 ]
 Groups = Annotated[
     dict[fields.Text, CableNumbers],
@@ -316,7 +310,7 @@ TurnList = Annotated[
 GradeIds = Annotated[
     Annotated[Literal["all"], fields.only_word("all", _GRADES), Tag("a word")]
     | Annotated[tuple[fields.Text, ...], fields.list_of(1, 1000, _GRADES), Tag("a list")],
-    Discriminator(word_or_list),
+    fields.by_word("a list"),
 ]
 _SomeMaterials = Annotated[
     tuple[MaterialName, ...],
@@ -326,7 +320,7 @@ _SomeMaterials = Annotated[
 Materials = Annotated[
     Annotated[Literal["all"], fields.only_word("all", _MATERIALS), Tag("a word")]
     | Annotated[_SomeMaterials, Tag("a list")],
-    Discriminator(word_or_list),
+    fields.by_word("a list"),
 ]
 
 
@@ -341,12 +335,12 @@ class PoseSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_list(cls, given: object) -> object:
-        if fields.in_brackets(given):
+    def _from_list(cls, raw: object) -> object:
+        if fields.in_brackets(raw):
             raise fields.refusal(
-                f"{describe(given)} is not a list", "[x, y, z]" + fields.in_brackets(given)
+                f"{describe(raw)} is not a list", "[x, y, z]" + fields.in_brackets(raw)
             )
-        return {"position": given} if isinstance(given, list) else only_one_of(given)
+        return {"position": raw} if isinstance(raw, list) else only_one_of(raw)
 
     @property
     def turn_rad(self) -> FloatArray:
@@ -374,8 +368,8 @@ class PathSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_name(cls, given: object) -> object:
-        return {"file": given} if isinstance(given, str) else given
+    def _from_name(cls, raw: object) -> object:
+        return {"file": raw} if isinstance(raw, str) else raw
 
 
 class WorkspaceSection(Section):
@@ -446,10 +440,10 @@ class WorkspaceSection(Section):
         """Return the orientations, where no law has them."""
         if self.orientation_range is not None:
             return Orientations.within(*self.orientation_range.bounds_rad)
-        turned = self.orientations or ((self.orientation,) if self.orientation else ())
-        if not turned:
+        sections = self.orientations or ((self.orientation,) if self.orientation else ())
+        if not sections:
             return Orientations()
-        return Orientations(frozen_array([orientation.turn_rad for orientation in turned]))
+        return Orientations(frozen_array([orientation.turn_rad for orientation in sections]))
 
 
 class LimitsSection(Section):
@@ -541,7 +535,7 @@ class SelectionSection(Section):
     groups: Groups | None = None
     """Cables that may get a rope of their own: names, each with its cable numbers, counted from
     1 in the order of the anchors."""
-    max_distinct_products: Annotated[int, fields.WholeNumber(1, MOST_CABLES)] | None = config_field(
+    max_distinct_products: Annotated[int, fields.WholeNumber(1, MAX_CABLES)] | None = config_field(
         "Different ropes"
     )
     """How many different ropes the groups of cables may have between them."""
@@ -552,12 +546,12 @@ class SelectionSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _factor_of_duty_class(cls, given: object) -> object:
-        factor = RUNNING_ROPE.get(str(given.get("duty_class"))) if isinstance(given, dict) else None
-        if factor is None or not isinstance(given, dict):
-            return given
-        only_one_of(given, ("safety_factor", "duty_class"), "the selection")
-        return {**given, "safety_factor": factor}
+    def _factor_of_duty_class(cls, raw: object) -> object:
+        factor = RUNNING_ROPE.get(str(raw.get("duty_class"))) if isinstance(raw, dict) else None
+        if factor is None or not isinstance(raw, dict):
+            return raw
+        only_one_of(raw, ("safety_factor", "duty_class"), "the selection")
+        return {**raw, "safety_factor": factor}
 
     def selection(self, price_list: PriceList | None, entries: Sequence[Entry]) -> Selection:
         """Return how a product is chosen, with the prices of its list, in a study as given."""
@@ -684,9 +678,9 @@ class MeasurementsSection(Section):
 
     def measurements(self, folder: Path) -> Measurements:
         """Return what was measured, with its files from this folder."""
-        sessions = tuple(each.session(folder) for each in self.sessions or ())
-        given = (self.file,) if isinstance(self.file, str) else self.file
-        files = [folder / name for name in given or ()]
+        sessions = tuple(session.session(folder) for session in self.sessions or ())
+        raw = (self.file,) if isinstance(self.file, str) else self.file
+        files = [folder / name for name in raw or ()]
         if sessions:
             files = [sessions[0].file, *sessions[0].more_files]
         return Measurements(

@@ -131,7 +131,7 @@ class Drawings:
     @chart
     def sensitivities(self) -> str | None:
         """What changes the utilisation, as bars."""
-        carries = self.analysis.carries
+        carries = self.analysis.sensitivity
         if carries is None:
             return None
         shares, moves = shares_of_inputs(carries), slopes_of_moves(carries)
@@ -170,7 +170,7 @@ class Drawings:
         pose = self.analysis.governing
         if pose is None:
             return None
-        statics = pose.alone
+        statics = pose.equilibrium
         return robot_scene(statics, int(statics.cable_tension_N.argmax()), pose.loads)
 
     @scene
@@ -240,7 +240,7 @@ class Drawings:
     @chart
     def served(self) -> str | None:
         """The share of the poses over the diameter."""
-        return None if self.maps is None else served_chart(self.maps.served)
+        return None if self.maps is None else served_chart(self.maps.coverage)
 
     @chart
     def verdicts(self) -> str | None:

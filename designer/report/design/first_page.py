@@ -17,9 +17,8 @@ from designer.model.robot import SAG_AT_MOST
 from designer.model.verdict import Requirement, State, Verdict
 from designer.report import format as fmt
 from designer.report.phrases import orientation_words
-from designer.selection.candidate import Candidate
-from designer.selection.efficiency import Allowance
-from designer.selection.objectives import MEANINGS
+from designer.selection.candidate import MEANINGS, Candidate
+from designer.selection.reeving import Allowance
 from designer.statics.task import LONG
 from designer.study import Study, rope_effects
 
@@ -120,7 +119,7 @@ def first_page(analysis: Analysis) -> Context:
         "answer": analysis.answer.value,
         "unmet": [Unmet(tuple(cases)) for cases in unmet_by_title(analysis.unmet)],
         "chosen": analysis.assignment.rope,
-        "need": analysis.most_needed,
+        "need": analysis.governing_need,
         "groups": analysis.groups,
         "untrusted": selection and selection.untrusted,
         "deciding": selection and MEANINGS[selection.objectives[0]],
@@ -180,7 +179,7 @@ def _card(analysis: Analysis) -> Context:
         return {"longest_m": each, "diameter": None}
     if chosen is not None:
         return {"strength": _strength(analysis, chosen), "diameter": None}
-    return {"diameter": None if analysis.most_needed is not None else _diameter(analysis)}
+    return {"diameter": None if analysis.governing_need is not None else _diameter(analysis)}
 
 
 def _strength(analysis: Analysis, chosen: Candidate) -> Context:
@@ -242,7 +241,7 @@ def _advice(analysis: Analysis, findings: Findings) -> Context:
     pose = analysis.pose
     weight = _weight(analysis)
     return {
-        "other_grades": [] if findings.adrift else _other_grades(analysis),
+        "other_grades": [] if findings.equilibrium_losses else _other_grades(analysis),
         "pose_fails": pose is not None and not pose.sizing.statics.is_solved,
         "some_served": workspace is not None and workspace.sampled is not None,
         "lacks_strength": not analysis.assignment.is_found
@@ -251,7 +250,7 @@ def _advice(analysis: Analysis, findings: Findings) -> Context:
         "hangs_by_weight": weight is not None
         and not weight["is_held_straight"]
         and any(requirement.id == "sag" for requirement in analysis.unmet),
-        "adrift_cases": [adrift.loaded.case.name for adrift in findings.adrift],
+        "unbalanced_cases": [loss.loaded.case.name for loss in findings.equilibrium_losses],
         "is_layer": unserved is not None and _is_layer(analysis, unserved),
         "is_strip": unserved is not None and unserved.depth_m < _STRIP * unserved.inradius_m,
         "not_served": [] if workspace is None else _verdicts_not_served(analysis),
@@ -364,7 +363,7 @@ def _weight(analysis: Analysis) -> Context | None:
         "is_held_straight": True,
         "rope": rope.name,
         "tensions_N": (float(straight_N.max()), float(statics.largest_tension_N)),
-        "utilisations": (straight, float(rope.used(statics))),
+        "utilisations": (straight, float(rope.utilisation(statics))),
     }
 
 

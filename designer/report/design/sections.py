@@ -15,12 +15,11 @@ from typing import TYPE_CHECKING, Any, SupportsFloat
 import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.carries import Carries
-from designer.analysis.fabrication import FabricatedCable, fabricated_cables
 from designer.analysis.governing import GoverningPose
+from designer.analysis.lengths import FabricatedCable, fabricated_cables
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.reactions import Reaction
-from designer.analysis.sensitivities import Sensitivities
+from designer.analysis.sensitivity import Sensitivities, SensitivityReport
 from designer.grades.grade import NOT_NAMED, TRUST_MEANING
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
 from designer.model.verdict import Verdict
@@ -31,10 +30,9 @@ from designer.report.design.first_page import by_title, outside_pose
 from designer.report.document import MOST_ROWS
 from designer.report.figures.charts_selection import rank
 from designer.report.templates import Statement, plain_statement
-from designer.selection.candidate import Candidate
+from designer.selection.candidate import MEANINGS, Candidate
 from designer.selection.cases import FEW_SAMPLES
-from designer.selection.efficiency import Allowance
-from designer.selection.objectives import MEANINGS
+from designer.selection.reeving import Allowance
 from designer.selection.result import GradeOutcome, SelectionResult
 from designer.sizing.loop import Iterate, LoopSizing
 from designer.statics.cable_loss import Fate
@@ -96,7 +94,7 @@ def requirements(analysis: Analysis) -> Context:
     write = fmt.alike((cable.exit_tension_N for cable in pose.cables), 5)
     return {
         **shown,
-        "governing_cable": pose.cables[int(pose.alone.cable_tension_N.argmax())].cable,
+        "governing_cable": pose.cables[int(pose.equilibrium.cable_tension_N.argmax())].cable,
         "tensions": [write(one.exit_tension_N, one.platform_tension_N) for one in pose.cables],
         "forces": _forces(pose),
     }
@@ -112,13 +110,13 @@ def _forces(pose: GoverningPose) -> list[tuple[str, list[str]]]:
 
 def sensitivities(analysis: Analysis) -> Mapping[str, object] | None:
     """What carries the result; None where no rope is chosen."""
-    carries, groups = analysis.carries, analysis.group_slopes
+    carries, groups = analysis.sensitivity, analysis.group_slopes
     if carries is not None:
         return _of_one_rope(carries)
     return _of_groups(groups) if groups else None
 
 
-def _of_one_rope(carries: Carries) -> Mapping[str, object]:
+def _of_one_rope(carries: SensitivityReport) -> Mapping[str, object]:
     slopes, utilisation = carries.sensitivities, carries.governing.utilisation
     platform = carries.governing.loaded.bare[0].platform
     values = {
@@ -142,7 +140,7 @@ def _of_one_rope(carries: Carries) -> Mapping[str, object]:
     }
 
 
-def slopes_of_moves(carries: Carries) -> list[Change]:
+def slopes_of_moves(carries: SensitivityReport) -> list[Change]:
     """Return what moves outward, and the exit points that matter most, with their slopes [1/m]."""
     moves = [("Sides of the region outward", carries.sensitivities.of("region").derivative)]
     slopes = carries.sensitivities.exit_points_per_m
@@ -153,7 +151,7 @@ def slopes_of_moves(carries: Carries) -> list[Change]:
     return [(name, slope) for name, slope in moves if math.isfinite(slope)]
 
 
-def shares_of_inputs(carries: Carries) -> list[Change]:
+def shares_of_inputs(carries: SensitivityReport) -> list[Change]:
     """Return the elasticity of each input over that of the strength, where it is known."""
     slopes = carries.sensitivities
     utilisation = -slopes.of("efficiency").derivative * slopes.of("efficiency").value

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from designer.analysis.edge import EdgeProfile
-from designer.analysis.maps import Focus, WorkspaceMaps
+from designer.analysis.maps import EdgeProfile, Focus, WorkspaceMaps
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
 

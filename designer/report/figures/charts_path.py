@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from designer.analysis.path_case import PathCase
-from designer.analysis.rope_bending import CableBending
+from designer.analysis.path import CableBending, PathCase
 from designer.report import format as fmt
 from designer.report.figures import canvas
 from designer.report.figures.canvas import Style

@@ -14,8 +14,7 @@ from designer.report import format as fmt
 from designer.report.document import MOST_ROWS
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
-from designer.selection.candidate import Candidate
-from designer.selection.objectives import MEANINGS
+from designer.selection.candidate import MEANINGS, Candidate
 from designer.selection.result import GradeOutcome, SelectionResult
 from designer.study import Objective
 

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from designer.analysis.maps import Served
+from designer.analysis.maps import CoverageCurve
 from designer.arrays import FloatArray
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
 from designer.selection.candidate import Candidate
-from designer.selection.usable import Usable
+from designer.selection.result import SizeCoverage
 from designer.workspace.sweep import Census
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _CHARACTER = 0.0098  # width of a character over the width of the figure
 
 
-def served_chart(served: Served) -> str:
+def served_chart(served: CoverageCurve) -> str:
     """Return the cumulative share of the workspace over the diameter, as SVG."""
     title = "Share of the workspace that a cable serves, over its diameter"
     with canvas.drawing():
@@ -47,7 +47,7 @@ def served_chart(served: Served) -> str:
         return canvas.svg(figure, "served", title)
 
 
-def _served_range(served: Served) -> tuple[float, float]:
+def _served_range(served: CoverageCurve) -> tuple[float, float]:
     """Horizontal limits [mm]; the last few poses near the boundary may need any diameter."""
     sag = served.needed_m, served.diameter_m, served.share
     straight = served.massless_needed_m, served.massless_diameter_m, served.massless_share
@@ -87,7 +87,7 @@ def _needed(axes: Axes, needed_m: float, label: str, colour: str, side: int) -> 
         canvas.note(axes, text, (1e3 * needed_m, 3.0), (3 * side, 0), rotation=90, **style)
 
 
-def _unserved(axes: Axes, served: Served) -> None:
+def _unserved(axes: Axes, served: CoverageCurve) -> None:
     if served.samples == 0:
         axes.text(0.5, 50.0, "every pose is left out", ha="center", va="center")
     if served.unserved == 0.0:
@@ -100,7 +100,7 @@ def _unserved(axes: Axes, served: Served) -> None:
     canvas.note(axes, text, (0.0, max(low, 20.0)), (6, -3), xycoords=frame, **style)
 
 
-def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
+def usable_chart(usable: SizeCoverage, chosen: Candidate | None) -> str:
     """Return the share of the workspace over the diameter of the sizes, as SVG."""
     with canvas.drawing():
         figure = canvas.sheet(52.0)
@@ -126,7 +126,7 @@ def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
         return canvas.svg(figure, "usable", "Share of the workspace that each size serves")
 
 
-def _usable_range(usable: Usable, diameters: FloatArray) -> tuple[float, float]:
+def _usable_range(usable: SizeCoverage, diameters: FloatArray) -> tuple[float, float]:
     """From the last size before any serves to a few above the one from which on all serve all."""
     serving = [k for k, size in enumerate(usable.sizes) if size.fraction > 0.0]
     low = diameters[max(serving[0] - 1, 0)] if serving else diameters[0]
@@ -136,7 +136,7 @@ def _usable_range(usable: Usable, diameters: FloatArray) -> tuple[float, float]:
     return low - room, high + room
 
 
-def _name_sizes(axes: Axes, usable: Usable, x: FloatArray, y: FloatArray) -> None:
+def _name_sizes(axes: Axes, usable: SizeCoverage, x: FloatArray, y: FloatArray) -> None:
     """Name the sizes along the curve, as far as there is room."""
     left, right = axes.get_xlim()
     last = -1.0

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from designer.analysis.field import RegionField
-from designer.analysis.maps import Focus
+from designer.analysis.maps import Focus, RegionField
 from designer.arrays import FloatArray, IntArray
 from designer.report.figures import canvas, palette
 

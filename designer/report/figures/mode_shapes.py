@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from designer.analysis.modes import PlatformModes
+from designer.analysis.governing import PlatformModes
 from designer.arrays import FloatArray
 from designer.model.robot import Robot
 from designer.report import format as fmt

@@ -16,7 +16,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from designer.analysis.field import RegionField
+from designer.analysis.maps import RegionField
 from designer.arrays import FloatArray
 from designer.report import format as fmt
 from designer.report.figures import canvas, palette

@@ -11,9 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from designer.analysis.field import body_lines_m, cable_curves_m, chords_m, largest_sag
-from designer.analysis.layers import Layers, layers_of
-from designer.analysis.maps import WorkspaceMaps
+from designer.analysis.maps import (
+    Layers,
+    WorkspaceMaps,
+    body_lines_m,
+    cable_curves_m,
+    chords_m,
+    largest_sag,
+    layers_of,
+)
 from designer.arrays import FloatArray
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
@@ -29,7 +35,7 @@ from designer.report.figures.view import (
     facing_azimuth_rad,
     fitting,
 )
-from designer.selection.usable import Usable
+from designer.selection.result import SizeCoverage
 from designer.statics.inverse import Statics
 
 if TYPE_CHECKING:
@@ -198,7 +204,7 @@ def cover_scene(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) -> Image:
     return workspace_scene(maps, quantity, _COVER)
 
 
-def usable_scene(maps: WorkspaceMaps, usable: Usable) -> Image | None:
+def usable_scene(maps: WorkspaceMaps, usable: SizeCoverage) -> Image | None:
     """Return a picture of the opened region, each part in the colour of its thinnest size.
 
     None for a list of points, and where no size serves a part only.
@@ -240,7 +246,7 @@ def colours(layers: Layers) -> list[tuple[float, ...]]:
     return [tuple(table(share)[:3]) for share in np.linspace(0.1, 0.95, len(layers.sizes))]
 
 
-def _layers_legend(figure: Figure, layers: Layers, usable: Usable) -> None:
+def _layers_legend(figure: Figure, layers: Layers, usable: SizeCoverage) -> None:
     looks: list[tuple[str, Style]] = []
     for one, colour in zip(layers.sizes, colours(layers), strict=True):
         share = "all" if one.fraction == 1.0 else f"{canvas.significant(100.0 * one.fraction, 2)} %"

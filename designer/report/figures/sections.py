@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.field import RegionField
-from designer.analysis.maps import WorkspaceMaps
-from designer.analysis.section import (
+from designer.analysis.maps import (
+    RegionField,
     SectionMap,
+    WorkspaceMaps,
     clearance_section,
     displacement_section,
     frequency_section,

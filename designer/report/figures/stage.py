@@ -11,7 +11,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from designer.analysis.field import RegionField
+from designer.analysis.maps import RegionField
 from designer.arrays import BoolArray, FloatArray
 from designer.errors import MissingLibraryError
 from designer.report.figures import palette

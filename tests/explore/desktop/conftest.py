@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 if find_spec("PySide6") is None:  # they say so in test_window_command.py, which needs none of it
-    collect_ignore_glob = ["test_window_[!c]*.py", "test_window_compare.py"]
+    collect_ignore_glob = ["test_window_[!c]*.py"]
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,4 @@
-"""Opening, saving, leaving; files that are faulty, change or vanish."""
+"""Files of the window: opened, saved, imported, exported; plans; what goes wrong around them."""
 
 from __future__ import annotations
 
@@ -10,9 +10,22 @@ from typing import Any
 
 import pytest
 from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QDesktopServices
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QFileDialog, QListWidget, QMessageBox, QPushButton
-from window_driver import LONGEST_MS, Driver, small_yard
+from PySide6.QtWidgets import (
+    QApplication,
+    QFileDialog,
+    QLabel,
+    QListWidget,
+    QMenu,
+    QMessageBox,
+    QPushButton,
+    QTableView,
+)
+from window_driver import LEFT, LONGEST_MS, Driver, built_yard, small_yard
+
+from designer.explore.question import Long
+from designer.sweeps.run import read_store
 
 BUTTON = QMessageBox.StandardButton
 
@@ -344,3 +357,269 @@ def test_another_theme_takes_no_more_room(yard: Driver) -> None:
         yard.rest()
         assert yard.window.width() == 1280
         assert yard.window.docks["This pose"].geometry().right() < yard.window.width()
+
+
+OPTIMISATION = """study: yard.yaml
+objective: rope_mass
+variables:
+  robot.anchors[2][1]: [22 m, 32 m]
+budget: {evaluations: 12}
+starts: 1
+samples: 40
+"""
+SWEEP = """study: yard.yaml
+vary: {robot.platform.mass: [160 kg, 180 kg]}
+keep: [selection.chosen.utilisation]
+"""
+
+
+def choose(driver: Driver, entry: str) -> None:
+    """Click on an entry of the menu of tools."""
+    bar, menu = driver.window.menuBar(), driver.find(QMenu, "tools menu")
+    driver.click(bar, bar.actionGeometry(menu.menuAction()).center())
+    driver.bot.waitUntil(menu.isVisible, timeout=LONGEST_MS)
+    action = driver.window.menus.actions[entry]
+    QTest.mouseClick(menu, LEFT, pos=menu.actionGeometry(action).center())
+
+
+def written(folder: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Write a plan, have it chosen where one is asked for, and return where its store goes."""
+    plan = folder / "plan.yaml"
+    plan.write_text(text, encoding="utf-8")
+    store = folder / "masses.zarr"
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_, **__: (str(plan), ""))
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(store), ""))
+    return store
+
+
+def notice(driver: Driver) -> str:
+    """The line above the scene; empty where there is none."""
+    frame = driver.window.work._notice
+    texts = [label.text() for label in frame.findChildren(QLabel) if label.isVisible()]
+    return " ".join(texts)
+
+
+@pytest.mark.slow
+def test_better_study_is_offered_and_taken_over(
+    yard: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written(tmp_path, OPTIMISATION, monkeypatch)
+    before = yard.session.text
+    choose(yard, "optimise")
+    assert yard.window.status.long.isVisible()
+    yard.rest()
+    assert "Mass of all ropes: " in notice(yard)
+    assert "robot.anchors[2][1]: 26 m → " in notice(yard)
+    assert "not proved the best" in yard.window.messages.toPlainText()
+    assert yard.session.text == before
+    yard.press("notice Take over")
+    yard.rest()
+    assert yard.session.study.robot.exit_points_m[2, 1] != 26.0
+    table = yard.find(QTableView, "differences")
+    assert table.isVisible()
+    assert "Mass of all cables, best rope" in {row.title for row in table.rows.rows}
+    assert notice(yard) == ""
+    yard.keys("Ctrl+Z")
+    assert yard.session.text == before
+    yard.keys("Ctrl+Z")
+    assert yard.window.live.pinned is None
+    yard.rest()
+
+
+@pytest.mark.slow
+def test_optimisation_tells_of_changes_made_meanwhile(
+    yard: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written(tmp_path, OPTIMISATION, monkeypatch)
+    yard.keys("Ctrl+Shift+O")
+    helper = yard.window.live._worker._helpers["optimise"]
+    yard.bot.waitUntil(lambda: yard.window.status.long._bar.maximum() > 0, timeout=LONGEST_MS)
+    yard.type_into("entry robot.platform.mass", "190 kg")
+    yard.rest()
+    assert helper._process is not None
+    yard.press("notice Take over")
+    yard.rest()
+    assert "Changes made since the search began" in yard.window.messages.toPlainText()
+    assert yard.session.study.robot.platform.mass_kg == 180.0
+    yard.keys("Ctrl+Z")
+    assert yard.session.study.robot.platform.mass_kg == 190.0
+    yard.rest()
+
+
+@pytest.mark.slow
+def test_optimisation_is_cancelled(
+    yard: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written(tmp_path, OPTIMISATION.replace("12", "100000"), monkeypatch)
+    yard.keys("Ctrl+Shift+O")
+    yard.bot.waitUntil(lambda: yard.window.status.long._bar.maximum() > 0, timeout=LONGEST_MS)
+    yard.press("cancel")
+    yard.rest()
+    assert not yard.window.status.long.isVisible()
+    assert notice(yard) == ""
+
+
+@pytest.mark.slow
+def test_sweep_writes_its_store_and_report(
+    yard: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store, opened = written(tmp_path, SWEEP, monkeypatch), []
+    monkeypatch.setattr(QDesktopServices, "openUrl", lambda url: opened.append(url.toLocalFile()))
+    choose(yard, "sweep")
+    assert yard.window.status.long.isVisible()
+    yard.rest()
+    page = tmp_path / "masses-report" / "sweep.html"
+    assert notice(yard) == f"sweep.html is in {page.parent}."
+    assert page.is_file()
+    assert bool(read_store(store)["done"].values.all())
+    assert str(store) in yard.window.messages.toPlainText()
+    yard.press("notice Open")
+    assert opened == [str(page)]
+
+
+REFUSED: dict[str, Any] = {
+    "no plan": ("name: no plan\n", "plan.yaml"),
+    "another study": (SWEEP.replace("yard.yaml", "other.yaml"), "other.yaml, and"),
+    "not saved": (SWEEP, "a study that is saved"),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", REFUSED)
+def test_faulty_plan_is_refused_in_a_line(
+    yard: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: str
+) -> None:
+    text, expected = REFUSED[fault]
+    store = written(tmp_path, text, monkeypatch)
+    (tmp_path / "other.yaml").write_text(yard.session.text, encoding="utf-8")
+    if fault == "not saved":
+        yard.type_into("entry robot.platform.mass", "190 kg")
+    for keys, name in (("Ctrl+Shift+O", "the optimisation"), ("Ctrl+Shift+W", "the sweep")):
+        if fault != "no plan" and name == "the optimisation":
+            continue
+        yard.keys(keys)
+        yard.rest()
+        assert yard.window.statusBar().currentMessage().startswith(f"{name}: {tmp_path}")
+        assert expected in yard.window.messages.toPlainText()
+    assert not store.exists()
+    assert not list(tmp_path.glob("*-report"))
+
+
+def test_bar_goes_on_with_other_long_work(empty: Driver) -> None:
+    live, bar = empty.window.live, empty.window.status.long
+    kinds: tuple[Long, ...] = ("sweep", "optimise")
+    for number, kind in enumerate(kinds):
+        live._pending[kind] = number
+        live.begun.emit(kind)
+    for kind, shown in zip(reversed(kinds), ("the sweep", ""), strict=True):
+        del live._pending[kind]
+        live.busy_changed.emit()
+        assert bar.isVisible() == bool(shown)
+        assert not shown or shown == bar._task.text()
+
+
+def test_without_a_study_there_is_nothing_to_optimise(empty: Driver) -> None:
+    assert not empty.window.menus.actions["optimise"].isEnabled()
+    assert not empty.window.menus.actions["sweep"].isEnabled()
+
+
+@pytest.fixture
+def broken_plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A plugin that has no licence."""
+    site = tmp_path / "site"
+    dist = site / "broken-1.0.dist-info"
+    dist.mkdir(parents=True)
+    (site / "broken.py").write_text("raise RuntimeError('no licence')\n", encoding="utf-8")
+    (dist / "METADATA").write_text("Metadata-Version: 2.1\nName: broken\nVersion: 1.0\n", "utf-8")
+    (dist / "entry_points.txt").write_text("[designer.plugins]\nbroken = broken\n", "utf-8")
+    monkeypatch.syspath_prepend(str(site))
+
+
+@pytest.mark.usefixtures("broken_plugin")
+def test_a_plugin_that_fails_is_told_and_the_rest_works(qtbot: Any, tmp_path: Path) -> None:
+    driver = Driver(qtbot, tmp_path, with_plugins=True)
+    driver.window.files.open(small_yard(tmp_path))
+    assert "no licence" in driver.window.statusBar().currentMessage()  # for some seconds
+    driver.rest()
+    assert "plugin broken (broken 1.0)" in driver.window.messages.toPlainText()
+    assert "no licence" in driver.window.messages.toPlainText()
+    assert driver.window.live.answers["ropes"].best is not None
+    driver.close()
+
+
+def test_a_file_that_becomes_faulty_is_shown_and_mended_by_typing(yard: Driver) -> None:
+    file = yard.session.file
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace("180 kg\n", "180 apples\n"), encoding="utf-8")
+    yard.window.files.look_at_disk()
+    yard.press("notice Reload")
+    assert yard.session.study.robot.platform.mass_kg == 180.0  # the last that was sound
+    yard.keys("Ctrl+E")
+    told = yard.find(QListWidget, "faults")
+    assert "robot.platform.mass" in told.item(0).text()
+    QTest.mouseClick(
+        told.viewport(), Qt.MouseButton.LeftButton, pos=told.visualItemRect(told.item(0)).center()
+    )
+    editor = yard.window.text.editor
+    assert editor.hasFocus()
+    yard.keys("End")
+    for _ in "apples":
+        QTest.keyClick(editor, Qt.Key.Key_Backspace)
+    QTest.keyClicks(editor, "kg")
+    yard.keys("Ctrl+Return")
+    yard.rest()
+    assert yard.window.pages.currentWidget() is yard.window.work
+    assert yard.session.faults == ()
+    assert yard.session.text == text
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("work", ["report", "selection", "diagnosis"])
+def test_closing_in_the_middle_of_long_work_loses_nothing(
+    empty: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, work: str
+) -> None:
+    """What was changed is asked about and saved; the process ends, and leaves nothing half done."""
+    empty.open(built_yard(tmp_path, empty) if work == "diagnosis" else small_yard(tmp_path))
+    file = empty.session.file
+    empty.type_into("entry robot.platform.mass", "190 kg")
+    empty.rest()
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(tmp_path / "r"), ""))
+    window = empty.window
+    if work == "diagnosis":
+        window.docks["Measured data"].raise_()
+        empty.bot.wait(50)
+        empty.press("diagnose")
+    elif work == "selection":
+        empty.press("full selection")
+    else:
+        empty.keys("Ctrl+R")
+    kind = {"report": "export", "selection": "select", "diagnosis": "diagnose"}[work]
+    helper = window.live._worker._helpers[kind]
+    empty.bot.waitUntil(lambda: helper._process is not None, timeout=LONGEST_MS)
+    process = helper._process
+    told = empty.answer(BUTTON.Yes, BUTTON.Save)
+    start = time.monotonic()
+    window.close()
+    assert "not finished" in told[0]
+    assert "not saved" in told[1]
+    assert not window.isVisible()
+    assert time.monotonic() - start < 120.0
+    process.join(900.0)
+    assert process.exitcode is not None
+    assert "mass: 190 kg" in file.read_text(encoding="utf-8")
+    assert not (tmp_path / "r").exists() or not list((tmp_path / "r").iterdir())
+
+
+def test_a_study_without_a_workspace_is_explored_pose_by_pose(yard: Driver, tmp_path: Path) -> None:
+    text = yard.session.text
+    bare = tmp_path / "bare.yaml"
+    bare.write_text(text[: text.index("workspace:")], encoding="utf-8")
+    yard.open(bare)
+    assert yard.window.live.answers["pose"].cables
+    assert yard.window.live.answers["ropes"] is None
+    assert "over the workspace" in yard.window.ropes.answer.text()
+    yard.window.live.begin_long("select")
+    yard.rest()
+    yard.type_into("entry robot.platform.mass", "240 kg")
+    yard.rest()
+    assert "over the workspace" in yard.window.ropes.answer.text()

@@ -103,7 +103,7 @@ def test_keys_turn_a_platform(empty: Driver) -> None:
     empty.keys("Ctrl+Shift+Up")
     assert np.degrees(np.linalg.norm(empty.place[3:])) == pytest.approx(10.05, abs=0.1)
     empty.rest()
-    assert empty.window.live.answers["here"].cables
+    assert empty.window.live.answers["pose"].cables
 
 
 def test_the_mouse_reads_the_map(yard: Driver) -> None:
@@ -173,14 +173,14 @@ def test_sag_is_exaggerated_for_the_eye_alone(yard: Driver) -> None:
         straight = curves[:, :1] + share * (curves[:, -1:] - curves[:, :1])
         return float(np.abs(curves - straight).max())
 
-    true, sag_m = deviation(), yard.window.live.answers["here"].cables[0].sag_m
+    true, sag_m = deviation(), yard.window.live.answers["pose"].cables[0].sag_m
     box = yard.find(QComboBox, "sag exaggeration")
     box.setFocus()
     yard.keys("Down")
     yard.keys("Down")
     assert deviation() == pytest.approx(5.0 * true, rel=1e-6)
-    assert yard.window.live.answers["here"].cables[0].sag_m == sag_m
-    assert "sag drawn 5 times" in yard.scene.overlay.texts()
+    assert yard.window.live.answers["pose"].cables[0].sag_m == sag_m
+    assert "sag exaggerated 5 times" in yard.scene.overlay.texts()
 
 
 def test_what_no_rope_serves_is_hatched(yard: Driver) -> None:
@@ -336,7 +336,7 @@ def test_a_path_is_played(yard: Driver) -> None:
     yard.open(file)
     assert player.isVisible()
     before, seen = yard.place.copy(), []
-    yard.window.live.listen(lambda answer: answer and seen.append(answer.statics.poses), "here")
+    yard.window.live.listen(lambda answer: answer and seen.append(answer.statics.poses), "pose")
     yard.keys("Ctrl+P")
     yard.bot.waitUntil(lambda: yard.scene.overlay.note.startswith("path: "), timeout=LONGEST_MS)
     yard.bot.waitUntil(lambda: not player.isChecked(), timeout=LONGEST_MS)
@@ -363,7 +363,7 @@ def test_a_mode_moves_in_the_scene(yard: Driver) -> None:
         return bool(np.ptp(ends, axis=0).max() > 0.1)
 
     yard.bot.waitUntil(look, timeout=LONGEST_MS)
-    shape = yard.window.live.answers["here"].modes.modes[0].shape
+    shape = yard.window.live.answers["pose"].modes.modes[0].shape
     away = np.array(ends) - yard.place[:3]
     assert np.cross(away, shape[:3]) == pytest.approx(np.zeros_like(away), abs=1e-3)
     modes.hide()
@@ -390,3 +390,31 @@ def test_nothing_is_cut_off(
     bar = empty.find(QCheckBox, "rule").parentWidget()
     for box in bar.findChildren(QWidget):
         assert not box.isVisible() or bar.rect().contains(box.geometry()), box.objectName()
+
+
+def test_legend_fits_into_a_low_scene(empty: Driver, tmp_path: Path) -> None:
+    empty.window.resize(1024, 700)
+    empty.open(small_yard(tmp_path))
+    empty.window.live.pin()
+    empty.type_into("entry robot.platform.mass", "190 kg")
+    empty.rest()
+    empty.window.compare.in_map.setChecked(True)
+    empty.rest()
+    legend = empty.scene.colour_legend
+    assert len(legend.steps.ticks) > 10
+    assert 0.0 in legend._bar._ticks
+    assert empty.scene.rect().contains(legend.geometry())
+
+
+def test_worst_pose_covers_no_name_of_an_exit_point(yard: Driver) -> None:
+    overlay = yard.scene.overlay
+    overlay.worst = (yard.session.study.robot.exit_points_m[0] - [0.3, 0.0, 0.0], "worst pose")
+    written: list[float] = []
+    write = overlay._write
+    overlay._write = lambda painter, place, text: (
+        written.append(place.y()) or write(painter, place, text)
+    )
+    overlay.repaint()
+    del overlay._write
+    assert written
+    assert written[-1] > yard.scene.view.pixels(overlay.worst[0])[1]

@@ -12,11 +12,11 @@ MASS = "robot.platform.mass"
 
 
 def test_an_entry_with_its_unit_is_taken_and_answered(yard: Driver) -> None:
-    before = yard.window.live.answers["here"].max_tension_N
+    before = yard.window.live.answers["pose"].max_tension_N
     yard.type_into(f"entry {MASS}", "0.36 t")
     yard.rest()
     assert yard.session.study.robot.platform.mass_kg == 360.0
-    assert yard.window.live.answers["here"].max_tension_N > 1.9 * before
+    assert yard.window.live.answers["pose"].max_tension_N > 1.9 * before
     assert "mass: 0.36 t" in yard.session.text
     assert yard.window.isWindowModified()
 

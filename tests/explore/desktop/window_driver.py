@@ -28,7 +28,10 @@ from designer.arrays import FloatArray  # noqa: E402
 from designer.explore.desktop.files import Settings  # noqa: E402
 from designer.explore.desktop.window import Window  # noqa: E402
 from designer.explore.session import Session  # noqa: E402
+from designer.model.cable import Cable  # noqa: E402
+from designer.model.robot import Poses  # noqa: E402
 from designer.resources import example_file  # noqa: E402
+from designer.statics.inverse import solve_sagging  # noqa: E402
 
 Some = TypeVar("Some", bound=QObject)
 _RGB = QImage.Format.Format_RGB888
@@ -201,6 +204,29 @@ def small_yard(folder: Path) -> Path:
     file = folder / "yard.yaml"
     file.write_text(text.replace("samples: 20000", "samples: 600"), encoding="utf-8")
     return file
+
+
+def built_yard(folder: Path, driver: Driver) -> Path:
+    """Write the yard crane with forty measured poses, its first winch homed 50 mm wrong."""
+    file = small_yard(folder)
+    driver.open(file)
+    robot, region = driver.session.study.robot, driver.session.study.workspace.region
+    position = region.inside_m(np.random.default_rng(5), 40)
+    statics = solve_sagging(robot, Poses.at(position), Cable(0.006, 0.142, 1.6e6, 5e3))
+    length = statics.length_m + np.array([0.05, 0.0, 0.0])
+    names = "x_m,y_m,z_m,length_1_m,length_2_m,length_3_m"
+    np.savetxt(
+        folder / "log.csv", np.column_stack([position, length]), "%.6f", ",", header=names,
+        comments="",
+    )  # fmt: skip
+    built = folder / "built.yaml"
+    built.write_text(
+        file.read_text(encoding="utf-8") + "measurements:\n  file: log.csv\n"
+        "  cable: {linear_mass: 0.142 kg/m, axial_stiffness: 1.6 MN}\n"
+        "  noise: {length: 1 mm}\n",
+        encoding="utf-8",
+    )
+    return built
 
 
 def n_colours(picture: np.ndarray[Any, Any]) -> int:

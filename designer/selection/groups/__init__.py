@@ -1,1 +1,0 @@
-"""A product for each group of cables, so that the machine is lightest."""
