@@ -113,6 +113,7 @@ def test_a_far_place_has_no_exponent() -> None:
 def test_alike_lengths_stand_once() -> None:
     alike = phrases.lengths(np.full(6, 338.2))
     assert alike == "6\u00a0×\u00a0338.20\u00a0m"
+    assert phrases.lengths(np.array([3.0, 1.0, 2.0, 4.5])) == "1.00 to 4.50\u00a0m"
     assert phrases.lengths(np.array([1.0, 2.0, 1.004])) == "2\u00a0×\u00a01.00 and 2.00\u00a0m"
 
 
