@@ -169,9 +169,9 @@ def test_one_size_alone_is_said_in_words(fibre: Analysis, analyses: dict[str, An
     assert fibre.selection is not None
     assert len(fibre.selection.front) == 1
     shown = said(section(Drawings(fibre), "selection"))
-    assert "3/4 in beats every other size" in shown
+    assert "3/4 in dominates every other size" in shown
     none = said(section(Drawings(analyses["too_thin"]), "selection"))
-    assert "beats every other size" not in none and "nothing to weigh it against" not in none
+    assert "dominates every other size" not in none and "no trade-off" not in none
 
 
 def test_chart_tells_materials_apart(fibre: Analysis) -> None:
