@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOMES = {
-    "designer.api": "analyse catalogue compare diagnose find_poses follow lengths read_study size"
+    "designer.api": "analyse catalogue compare find_poses follow lengths read_study size"
     " write_report",
     "designer.analysis.analyse": "Analysis",
     "designer.analysis.comparison": "Comparison",
@@ -20,6 +20,7 @@ _HOMES = {
     "designer.grades.grade": "Grade",
     "designer.grades.registry": "Catalogue",
     "designer.diagnosis.result": "Diagnosis",
+    "designer.diagnosis.study": "diagnose",
     "designer.exports.formats": "export",
     "designer.errors": "DesignerError EffectError InputError OutputError",
     "designer.model.cable": "Cable Material",
@@ -49,7 +50,6 @@ if TYPE_CHECKING:
         analyse,
         catalogue,
         compare,
-        diagnose,
         find_poses,
         follow,
         lengths,
@@ -58,6 +58,7 @@ if TYPE_CHECKING:
         write_report,
     )
     from designer.diagnosis.result import Diagnosis
+    from designer.diagnosis.study import diagnose
     from designer.errors import DesignerError, EffectError, InputError, OutputError
     from designer.exports.formats import export
     from designer.grades.grade import Grade

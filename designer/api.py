@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -17,7 +17,6 @@ from designer.analysis.comparison import compare as compare_results
 from designer.analysis.lengths import FoundPoses, Lengths, lengths_of, poses_of
 from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.arrays import FloatArray
-from designer.diagnosis.result import Diagnosis
 from designer.effects.load import load_effects
 from designer.errors import InputError, WrongValueError
 from designer.grades.registry import Catalogue, load_catalogue
@@ -41,7 +40,6 @@ __all__ = [
     "analyse",
     "catalogue",
     "compare",
-    "diagnose",
     "find_poses",
     "follow",
     "lengths",
@@ -246,33 +244,3 @@ def _served(answer: Answer | None) -> Answer:
     if answer is None:
         raise InputError.at("study", "no rope serves it, so there are no lengths")
     return answer
-
-
-def diagnose(
-    study: AnyStudy,
-    data: Path | str | None = None,
-    progress: Callable[[str], None] = lambda _: None,
-) -> Diagnosis:
-    """Compare measured data with the model, and find the effect that the model lacks.
-
-    Parameters
-    ----------
-    study : Study, Path or str
-        With ``measurements``.
-    data : Path or str, optional
-        Measured data, instead of the study's.
-    progress : callable
-        Called with what is being done.
-
-    Raises
-    ------
-    InputError
-        If there is nothing to compare, or the data are not as they should be.
-    """
-    from designer.diagnosis.diagnose import diagnose_study
-    from designer.measured.read import read_measured
-
-    study = as_study(study)
-    if data is not None and study.measurements is not None:
-        study = replace(study, measurements=study.measurements.of_file(Path(data)))
-    return diagnose_study(study, read_measured(study), progress)

@@ -63,6 +63,7 @@ RINGS = (
     Ring("reference", ("reference",), ("verify",)),
     Ring("exchange", ("foreign", "exports"), ("import", "export")),
     Ring("batch", ("sweeps", "optimum"), ("sweep", "optimise")),
+    Ring("diagnosis", ("measured", "diagnosis"), ("diagnose",)),
     Ring("drafting", ("drafting",), ("catalog new",)),
     Ring("window", ("explore",), ("explore",)),
 )
@@ -136,6 +137,15 @@ def register_report_sections() -> Sequence[Callable[[Analysis], tuple[str, str] 
 
     It returns title and body: text, or HTML as `markupsafe.Markup`; None where the study gives
     nothing for it.
+    """
+    raise NotImplementedError  # only the signature counts
+
+
+@hookspec
+def register_template_filters() -> Sequence[Callable[..., object]]:
+    """Return a list of functions, each a filter of its name in templates of pages.
+
+    Those of plugins are for the design report.
     """
     raise NotImplementedError  # only the signature counts
 

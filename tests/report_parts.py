@@ -14,10 +14,10 @@ from typing import Any
 from markupsafe import Markup
 
 from designer.analysis.provenance import Provenance
+from designer.diagnosis.report import diagnosis_report
 from designer.diagnosis.result import Diagnosis
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
-from designer.report.diagnosis.report import diagnosis_report
 from designer.report.document import Report, Section
 from designer.report.render import rendered
 from designer.report.templates import environment

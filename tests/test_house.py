@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections import Counter
 from collections.abc import Iterator
 from functools import cache
@@ -15,7 +16,7 @@ from designer.plugins import RINGS
 ROOMS = [
     "__init__", "errors", "arrays", "spelling", "checked", "units", "resources", "progress",
     "model", "physics", "kernel", "statics", "sizing", "plugins", "effects", "study", "documents",
-    "grades", "measured", "workspace", "proof", "selection", "diagnosis", "analysis", "io",
+    "grades", "workspace", "proof", "selection", "analysis", "io",
     "report", "api", "cli",
     *(room for ring in RINGS for room in ring.rooms), "__main__",
 ]  # fmt: skip
@@ -45,13 +46,14 @@ def imported_rooms(file: Path) -> set[str]:
         if isinstance(node, ast.If) and getattr(node.test, "id", None) == "TYPE_CHECKING"
         for inner in ast.walk(node)
     }
-    found = set()
+    names = []
     for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and node.module and id(node) not in only_types:
-            parts = node.module.split(".")
-            if parts[0] == "designer":
-                found |= {parts[1]} if len(parts) > 1 else {alias.name for alias in node.names}
-    return found
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and id(node) not in only_types:
+            names += [f"{node.module}.{alias.name}" for alias in node.names]
+    parts = (name.split(".") for name in names)
+    return {room for package, room, *_ in (p for p in parts if len(p) > 1) if package == "designer"}
 
 
 def test_every_room_has_its_place() -> None:
@@ -81,6 +83,24 @@ def test_the_core_imports_no_ring() -> None:
         if ring_of[room] not in {ring, *USED_RINGS.get(ring, ())}
     ]
     assert inward == []
+
+
+def test_contributing_maps_every_room() -> None:
+    text = (FOLDER.parent / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    core, rings = (
+        text.partition(f"\n| {head}")[2].partition("\n\n")[0]
+        for head in ("room of the core", "ring |")
+    )
+    firsts = (line.split(" | ")[0] for line in core.splitlines()[2:])
+    named = {name for first in firsts for name in re.findall(r"`(\w+)/?`", first)}
+    ring_rooms = {room for ring in RINGS for room in ring.rooms}
+    assert named == set(ROOMS) - ring_rooms - {"__init__", "__main__"}
+    rows = [
+        f"| {ring.name} | {', '.join(f'`{room}/`' for room in ring.rooms)} | "
+        f"{', '.join(f'`{command}`' for command in ring.commands)} |"
+        for ring in RINGS
+    ]
+    assert [row for row in rows if f"\n{row}" not in rings] == []
 
 
 PRONOUNS = frozenset(

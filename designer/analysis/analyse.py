@@ -52,15 +52,16 @@ from designer.proof.servable import Servable, servable
 from designer.selection.assignment import Assignment, Qualities, for_all, qualities_of
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult
+from designer.selection.criteria import CaseLoads
 from designer.selection.family import CaseNeed, family_needs, governing_need
 from designer.selection.groups import GroupChoice, choose_groups_of
-from designer.selection.requirements import CaseLoads
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.free_motion import FreeMotion, free_motion
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Study, as_built_by, require_answerable
+from designer.workspace.effort import MOTION
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import HangingCables, WorkspaceMap, map_workspace
 
@@ -68,8 +69,6 @@ if TYPE_CHECKING:
     from designer.report.plot import Plots
 
 
-_MOTION_SAMPLES = 64
-"""Poses of a workspace that show whether a motion is free in all of them."""
 _METAL_KG_PER_M3 = 2500.0
 """Over the nominal circle: of wire ropes 3800 at least, of fibre ropes 1640 at most."""
 _NEEDS_CHOSEN_ONLY = re.compile(
@@ -188,7 +187,7 @@ class Analysis(checked.Shown):
         study, workspace = self.study, self.study.workspace
         if workspace is not None:
             landmarks = workspace.space.landmarks()
-            poses = Poses.at(np.concatenate([landmarks, workspace.thinned(_MOTION_SAMPLES)]))
+            poses = Poses.at(np.concatenate([landmarks, workspace.thinned(MOTION)]))
         elif study.pose is not None:
             poses = study.pose.flat
         else:

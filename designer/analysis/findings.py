@@ -32,23 +32,26 @@ from designer.selection.verify import Verification, verify
 from designer.sizing.newton import limit_ratio, size_poses
 from designer.statics.free_motion import FreeMotion
 from designer.statics.inverse import solve_massless, solve_sagging
-from designer.statics.sizes import is_quick
+from designer.statics.sizes import has_fast_solver
 from designer.workspace.demand import is_left_out
+from designer.workspace.effort import (
+    EQUILIBRIUM,
+    EQUILIBRIUM_REDUNDANT,
+    HANGING,
+    SLOW_HANGING,
+    slow_positions,
+)
 from designer.workspace.sweep import WorkspaceMap, map_workspace, open_sweep
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
 
 
-_MAX_SAMPLES = 20_000  # of the opposite policy
-_SLOW_PLACES, _SLOW_POSITIONS = 2000, 100  # the same of robots that are slow to solve
 _CHUNK = 2**18
 _THIN_M = 1e-3
 _STEPS = np.array([0.1, 0.2, 0.3, 0.5, 0.75, 1.0])  # of the way to the middle
 _BELOW = 0.25  # of the robot's size: how far below the exit points cables hold a platform easily
 _RISES, _FACTORS = (0.02, 0.05, 0.1, 0.2, 0.5), (1.1, 1.25, 1.5, 2.0, 4.0)
-_EQUILIBRIUM_SAMPLES, _REDUNDANT_SAMPLES = 512, 32
-"""Poses of each direction of a load; of redundant robots few, since each is a programme."""
 
 
 def _named_worst(survey: WorkspaceMap) -> dict[str, Any]:
@@ -203,7 +206,7 @@ def equilibrium_losses(
     robot: Robot, workspace: Workspace, cases: Sequence[LoadCase], cable: Cable
 ) -> Iterator[EquilibriumLoss]:
     """Yield the load cases in which straight cables hold fewer poses than at rest."""
-    samples = _REDUNDANT_SAMPLES if robot.is_redundant else _EQUILIBRIUM_SAMPLES
+    samples = EQUILIBRIUM_REDUNDANT if robot.is_redundant else EQUILIBRIUM
 
     def holds(robot: Robot, places: FloatArray) -> BoolArray:
         return np.isfinite(solve_massless(robot, Poses.at(places)).largest_tension_N)
@@ -301,9 +304,8 @@ def _hanging(analysis: Analysis, survey: WorkspaceMap) -> float:
 
 
 def _with_fewer_samples(robot: Robot, workspace: Workspace) -> Workspace:
-    largest = _MAX_SAMPLES
-    if not is_quick(robot):
-        largest = max(_SLOW_PLACES // workspace.orientations.count, _SLOW_POSITIONS)
+    is_fast = has_fast_solver(robot)
+    largest = HANGING if is_fast else slow_positions(workspace, SLOW_HANGING)
     return replace(workspace, samples=min(workspace.samples, largest))
 
 

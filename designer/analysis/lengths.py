@@ -11,9 +11,9 @@ import numpy as np
 from designer import checked
 from designer.analysis.analyse import Analysis
 from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.documents.columns import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.documents.plain import csv_text
 from designer.grades.grade import Grade, Size
-from designer.measured.assign import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.model.winches import DEAD_TURNS, Drum

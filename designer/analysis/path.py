@@ -31,8 +31,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
+from designer.documents.columns import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.documents.plain import Json, csv_text
-from designer.measured.assign import POSITION, ROTATION_VECTOR, length_names, tension_names
 from designer.model.load_case import Loaded
 from designer.model.motion import Motion
 from designer.model.robot import Poses

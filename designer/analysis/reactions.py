@@ -12,8 +12,14 @@ from designer.documents.plain import Json, csv_text, plain, record
 from designer.model.load_case import Loaded
 from designer.model.space import named_place
 from designer.progress import Advance
-from designer.selection.criteria import Criterion, starts_of_each
-from designer.selection.requirements import CaseLoads, Evaluation, equilibria, evaluate
+from designer.selection.criteria import (
+    CaseLoads,
+    Criterion,
+    Evaluation,
+    equilibria,
+    evaluate,
+    starts_of_each,
+)
 from designer.statics.inverse import Statics, platform_branch_N, reaction_N, winch_branch_N
 from designer.workspace.refine import ONE_CLIMB
 

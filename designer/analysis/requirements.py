@@ -18,17 +18,18 @@ from designer.model.robot import Robot
 from designer.model.verdict import Answer, Requirement, State, Verdict
 from designer.selection.assignment import Assignment, Qualities
 from designer.selection.candidate import Candidate
-from designer.selection.criteria import criteria_of, rope_diameter_m
-from designer.selection.family import CaseNeed
-from designer.selection.groups import GroupChoice
-from designer.selection.reeving import drum_of, sheave_ratio_of, spooling_of
-from designer.selection.requirements import (
+from designer.selection.criteria import (
     CaseLoads,
     at_place,
+    criteria_of,
     equilibrium_of,
     evaluate,
     extreme_lengths_m,
+    rope_diameter_m,
 )
+from designer.selection.family import CaseNeed
+from designer.selection.groups import GroupChoice
+from designer.selection.reeving import drum_of, sheave_ratio_of, spooling_of
 from designer.selection.result import SelectionResult
 from designer.sizing.newton import size_poses
 from designer.statics.free_motion import FreeMotion

@@ -48,7 +48,7 @@ from designer.selection.cases import CaseResult
 from designer.selection.reeving import Allowance
 from designer.selection.result import SelectionResult
 from designer.statics.geometry import upright_situation
-from designer.statics.sizes import add_slowly, is_quick, meet
+from designer.statics.sizes import add_slowly, evaluate_sizes, has_fast_solver
 from designer.study import Study
 from designer.workspace.demand import tension_demand
 from designer.workspace.refine import LIGHT, Effort, refine
@@ -148,7 +148,7 @@ class GoverningCandidates:
         loaded = self.loaded
         still = loaded.wind is None and not loaded.bare[0].platform.centre_force_N.any()
         is_plain = loaded.robot.has_equal_cables and still and not loaded.keeps_lengths
-        return is_plain and is_quick(loaded.robot)
+        return is_plain and has_fast_solver(loaded.robot)
 
     def elsewhere(self) -> GoverningCandidates:
         """Return the same at places from all over the region."""
@@ -196,7 +196,7 @@ class GoverningCandidates:
         ropes = [Cable(math.nan, *row) for row in figures[order].tolist()]
         poses, cells = Poses.at(self.places), np.arange(len(self.places))
         exclude = self.workspace.hangs_below == "exclude"
-        meets = meet(robot, poses, ropes, cells, len(cells), leaves_out_hanging=exclude)
+        meets = evaluate_sizes(robot, poses, ropes, cells, len(cells), leaves_out_hanging=exclude)
         rows, at = np.nonzero(meets.failed)
         if len(rows):
             add_slowly(meets, robot, poses, ropes, rows, at, cells, exclude)
@@ -306,7 +306,7 @@ def searched(
     """
     survey = Checked()
     for turn in range(1, _MOST_ROUNDS + 1):
-        is_slow = not all(is_quick(pose.loaded.robot) for pose in poses)
+        is_slow = not all(has_fast_solver(pose.loaded.robot) for pose in poses)
         rows = _telling(used)[: _CHECKED_SLOWLY if is_slow else _CHECKED]
         found = [_worse(poses, draws.part([row]), float(used[row]), is_slow) for row in rows]
         exceeding = [pair for pair in found if pair is not None]

@@ -9,7 +9,8 @@ import atexit
 import gc
 import shlex
 import sys
-from dataclasses import replace
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,7 +18,6 @@ import typer
 
 from designer import __version__
 from designer.cli.catalog import catalog
-from designer.cli.compare import compare
 from designer.cli.lengths import lengths, pose
 from designer.cli.options import (
     INTERRUPTED,
@@ -34,20 +34,15 @@ from designer.cli.options import (
     output_option,
     study_of,
 )
-from designer.cli.plan import write_plan
-from designer.cli.schema import schema, write_with_schema
-from designer.errors import (
-    DesignerError,
-    InputError,
-    OutputError,
-    described,
-    visible,
-)
+from designer.errors import DesignerError, InputError, OutputError, described, visible
 from designer.io.process import interruption, readable_output, settle_in
 from designer.resources import example_names
 
 if TYPE_CHECKING:
-    from designer.diagnosis.result import Diagnosis
+    from designer.analysis.comparison import Comparison
+    from designer.documents.plain import Json
+    from designer.grades.registry import Catalogue
+    from designer.study import Study
 
 
 class Commands(HookedCommands):
@@ -90,8 +85,6 @@ app = typer.Typer(
 app.add_typer(catalog, name="catalog")
 app.command()(lengths)
 app.command()(pose)
-app.command()(compare)
-app.command()(schema)
 
 
 _OBJECTS_BEFORE_SEARCH = 100_000
@@ -219,121 +212,6 @@ def size(
 
 
 @app.command()
-def diagnose(
-    config: Config,
-    output: Annotated[Path | None, output_option("CONFIG-diagnosis")] = None,
-    checks: Annotated[
-        bool, typer.Option("--check", help="Search nothing: how well do the declared effects fit?")
-    ] = False,
-    data: Annotated[
-        Path | None,
-        option("--data", metavar="CSV", text="Measured data, instead of the study's."),
-    ] = None,
-    plans: Annotated[
-        bool, typer.Option("--plan", help="Before there are data: which poses to measure?")
-    ] = False,
-    poses: Annotated[
-        int | None, typer.Option("--poses", metavar="N", help="With --plan: how many poses.")
-    ] = None,
-    unknown: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--unknown", metavar="NAME", help="With --plan: instead of measurements.unknown."
-        ),
-    ] = None,
-    length_noise: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LENGTH", help="With --plan: deviation of a length, instead of the study's."
-        ),
-    ] = None,
-    tension_noise: Annotated[
-        str | None,
-        typer.Option(metavar="FORCE", help="With --plan: deviation of a tension, as before."),
-    ] = None,
-    template: Template = None,
-    no_plugins: NoPlugins = False,
-) -> bool:
-    """Compare measured data with the model, and find the effect that the model lacks.
-
-    Writes diagnosis.html, diagnosis.pdf, diagnosis.json, residuals.csv and CONFIG.diagnosed.yaml,
-    which has what was fitted and found under `effects:`, and how surely it is known under
-    `uncertainty:`; `designer report` on it uses both. With --check
-    nothing is searched, and check.html, check.pdf and diagnosis.json go into CONFIG-check.
-
-    With --plan there are no data yet: it chooses the poses that tell most of what is unknown, and
-    writes plan.csv for the controller, plan.html, plan.pdf and plan.json, with the deviations to
-    expect, into CONFIG-plan; with -o FILE.csv the table alone. What is unknown, what will be read
-    and its noise stand under `measurements:`, whose file need not be there, or in options.
-
-    \b
-    Examples:
-      designer diagnose built-crane.yaml
-      A month later:  designer diagnose --check built-crane.diagnosed.yaml --data new.csv
-      Before:  designer diagnose --plan crane.yaml --unknown anchors --length-noise "1 mm"
-
-    Exit status 0: the model, with what was found, agrees with the data, or the plan tells all that
-    is unknown. 1: something is left or not plausible, declared effects do not help, or the plan
-    leaves something unknown. 2: the input is wrong.
-    """
-    asked = (poses, unknown, length_noise, tension_noise)
-    if plans:
-        is_alone = not checks and data is None
-        return write_plan(config, output, *asked, is_alone, template, no_plugins=no_plugins)
-    if any(asked):
-        raise InputError.at("designer diagnose", "has options of a plan", "--plan beside them")
-    from designer.cli.tables import print_check, print_diagnosis
-    from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out
-    from designer.io.output import file_names, output_folder, require_file
-    from designer.measured.read import read_measured
-    from designer.measured.table import is_bag
-
-    study, plugins = study_of(config, no_plugins)
-    if data is not None and study.measurements is not None:
-        if not data.is_file() and not is_bag(data):
-            raise InputError.at("--data", f"there is no file {data}", "a CSV file")
-        study = replace(study, measurements=study.measurements.of_file(data))
-    measured = read_measured(study)
-    catalogue = None if checks else catalogue_of(study, plugins)
-    announce_compiling()
-    folder = output or Path(f"{config.stem}-{'check' if checks else 'diagnosis'}")
-
-    from designer.diagnosis.check import Check, check
-    from designer.diagnosis.design import with_design
-    from designer.diagnosis.diagnose import diagnose_study
-    from designer.io.results import diagnosed_config
-    from designer.report.diagnosis.report import write_check, write_diagnosis
-
-    doing = "checking" if checks else "searching"
-    with output_folder(folder) as building, ProgressBars(doing) as bars:
-        require_file(folder / f"{config.stem}.diagnosed.yaml")
-        result: Check | Diagnosis
-        if catalogue is None:
-            result = check(study, measured, bars)
-            bars("report")
-            write_check(result, building, template)
-        else:
-            result = diagnose_study(study, measured, bars)
-            bars("the design with and without")
-            result = with_design(result, catalogue.grades)
-            bars("report")
-            write_diagnosis(result, building, template)
-            residuals = result.residuals_csv()
-            (building / "residuals.csv").write_text(residuals, encoding="utf-8")
-            text = diagnosed_config(result, folder)
-            (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
-        (building / "diagnosis.json").write_text(f"{result.to_json()}\n", encoding="utf-8")
-        written = file_names(building)
-    if isinstance(result, Check):
-        print_check(result, folder, written)
-        return result.is_positive
-    n_known = len(study.known_effects.problems)
-    print_left_out(result.study.known_effects.problems[n_known:])
-    print_diagnosis(result, folder, written)
-    return result.is_positive
-
-
-@app.command()
 def init(
     path: Annotated[
         Path | None, argument("PATH", "File to write, EXAMPLE.yaml if left out.")
@@ -379,5 +257,123 @@ def init(
     if example not in names:
         raise InputError.at("--example", f"there is no example {example!r}", ", ".join(names))
     target = path or Path(f"{example}.yaml")
-    write_with_schema(target, example_file(example).read_text(encoding="utf-8"))
+    _write_with_schema(target, example_file(example).read_text(encoding="utf-8"))
     typer.echo(f"{target} written. Next:  designer report {shlex.quote(str(target))}")
+
+
+@app.command()
+def compare(
+    a: Annotated[Path, argument("A", "A study or result.json.")],
+    b: Annotated[Path, argument("B", "Another one.")],
+    output: Annotated[Path | None, output_option("A-B-comparison")] = None,
+    template: Template = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Put two designs side by side: what differs in what was asked, and in the answer.
+
+    Studies are solved first; results of `designer report` are taken as they are. Writes
+    comparison.html, comparison.pdf and comparison.json.
+
+    Example:  designer compare crane.yaml crane-report/result.json
+    """
+    from designer.cli.terminal import ProgressBars, announce_compiling
+    from designer.io.output import file_names, output_folder
+    from designer.io.results import read_result
+
+    sources: list[Json | tuple[Study, Catalogue]] = []
+    plugins = None
+    for path in (a, b):
+        if path.suffix == ".json":
+            sources.append(read_result(path))
+        else:
+            study, plugins = study_of(path, no_plugins, plugins)
+            sources.append((study, catalogue_of(study, plugins)))
+    announce_compiling(proves=True)
+
+    from designer.analysis.analyse import analyse
+    from designer.analysis.comparison import compare as compare_results
+    from designer.documents.plain import json_text
+    from designer.report.comparison import write_comparison
+
+    folder = output or Path(f"{a.stem}-{b.stem}-comparison")
+    with output_folder(folder) as building, ProgressBars() as bars:
+        results = [
+            source if isinstance(source, dict) else analyse(*source, reporter=bars).to_dict()
+            for source in sources
+        ]
+        comparison = compare_results(*results)
+        write_comparison(comparison, (a.name, b.name), building, template)
+        text = f"{json_text(comparison.to_dict())}\n"
+        (building / "comparison.json").write_text(text, encoding="utf-8")
+        written = file_names(building)
+    _print_comparison(comparison, (a.name, b.name), folder, written)
+
+
+def _print_comparison(
+    comparison: Comparison, names: tuple[str, str], folder: Path, written: Sequence[str]
+) -> None:
+    from rich.markup import escape
+
+    from designer.cli.terminal import bare_table, show
+    from designer.report.phrases import relative_change, result_value
+
+    if comparison.is_same:
+        show("Nothing differs.")
+    table = bare_table("", f"A: {names[0]}", f"B: {names[1]}", "change")
+    for line in (*comparison.inputs, *comparison.answers, *comparison.unmet):
+        if line.differs:
+            values = (result_value(value, line.path) for value in (line.a, line.b))
+            table.add_row(*map(escape, (line.label or line.path, *values, relative_change(line))))
+    if table.row_count:
+        show(table)
+    show(f"{folder}: {', '.join(written)}", markup=False)
+
+
+@app.command()
+def schema(
+    output: Annotated[
+        Path | None,
+        option("-o", "--output", metavar="FILE", text="File to write; printed if left out."),
+    ] = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Give the JSON Schema of a study, by which editors complete, explain and check it.
+
+    `designer init` writes it beside the study. Write it again after an update of cdpr-designer, or
+    when a plugin that brings effects has come or gone.
+
+    Example:  designer schema -o cdpr-designer.schema.json
+    """
+    from designer.io.output import write_file
+
+    text = _schema_text(no_plugins)
+    if output is None:
+        typer.echo(text, nl=False)
+        return
+    write_file(output, text)
+    typer.echo(f"{output} written")
+
+
+def _write_with_schema(study: Path, text: str) -> None:
+    """Write a new study, and beside it the schema that its head names."""
+    from designer.io.config.moved import SCHEMA_FILE, with_modeline
+    from designer.io.output import write_file, write_new_file
+    from designer.io.process import undone_at_end
+
+    schema = _schema_text(no_plugins=False)
+    write_new_file(study, with_modeline(text))
+    with undone_at_end() as undo:
+        undo.add(partial(study.unlink, missing_ok=True))
+        write_file(study.with_name(SCHEMA_FILE), schema)
+        undo.forget()
+
+
+def _schema_text(no_plugins: bool) -> str:
+    from designer.cli.terminal import print_left_out
+    from designer.effects.load import load_effects
+    from designer.io.config.json_schema import schema_text
+    from designer.plugins import find_plugins
+
+    effects = load_effects(find_plugins(with_plugins=not no_plugins))
+    print_left_out(effects.problems)
+    return schema_text(effects.by_id)

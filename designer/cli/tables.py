@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,13 +14,11 @@ from designer.grades.grade import TYPICAL_LOAD_FRACTION, Grade
 from designer.grades.listing import facts
 from designer.model.load_case import STATIC
 from designer.model.verdict import Answer
-from designer.spelling import in_runs, kilograms, position, stated
+from designer.spelling import kilograms, position, stated
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis
     from designer.analysis.pose import PoseAnalysis
-    from designer.diagnosis.check import Check
-    from designer.diagnosis.result import Diagnosis, Estimate
     from designer.selection.groups import GroupChoice
     from designer.selection.result import SelectionResult
     from designer.study import Selection, Study
@@ -35,14 +32,16 @@ bad = "[bold red]{}[/]".format
 Row = tuple[str, ...]
 
 
-def _print_rows(title: str, rows: Iterable[Row], *headings: str) -> None:
+def print_rows(title: str, rows: Iterable[Row], *headings: str) -> None:
+    """Print a table."""
     table = bare_table(*headings, title=title)
     for row in rows:
         table.add_row(*row)
     show(table)
 
 
-def _print_written(folder: Path, written: Sequence[str]) -> None:
+def print_written(folder: Path, written: Sequence[str]) -> None:
+    """Print what was written into a folder, and why there is no PDF."""
     from designer.report.templates import why_no_pdf
 
     show(f"{folder}: {', '.join(written)}", markup=False)
@@ -52,8 +51,8 @@ def _print_written(folder: Path, written: Sequence[str]) -> None:
 
 def print_summary(analysis: Analysis, folder: Path, written: Sequence[str]) -> None:
     """Print the short table at the end of ``designer report``."""
-    _print_rows(analysis.study.name, summary_rows(analysis))
-    _print_written(folder, written)
+    print_rows(analysis.study.name, summary_rows(analysis))
+    print_written(folder, written)
 
 
 def summary_rows(analysis: Analysis) -> Iterator[Row]:
@@ -215,7 +214,7 @@ def print_pose(study: Study, pose: PoseAnalysis) -> None:
 
     statics = pose.sizing.statics
     show(f"{study.name}: {statics.sentence}", markup=False)
-    _print_rows("Sizing", _sizing_rows(pose), "", "diameter [mm]", "largest tension [N]")
+    print_rows("Sizing", _sizing_rows(pose), "", "diameter [mm]", "largest tension [N]")
     if pose.loop.iterates and not pose.loop.has_converged:
         show(f"loop: {pose.loop.outcome}")
     if statics.is_solved:
@@ -263,108 +262,6 @@ def figure(value: float, decimals: int) -> str:
     return f"{value:.{decimals}f}" if is_plain else f"{value:.6g}"
 
 
-def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) -> None:
-    """Print the verdict, and the short table at the end of ``designer diagnose``."""
-    errors = [
-        f"{kind.name} error {kind.scale * before.heldout.value:.3g} → "
-        f"{kind.scale * after.heldout.value:.3g} {kind.unit}"
-        for kind, before, after in diagnosis.errors
-    ]
-    words = diagnosis.verdict.value.replace("nothing_to_find", "agrees").replace("_", " ")
-    answer = f"{words}: {', '.join(errors)} on unseen rows"
-    show(answer if diagnosis.is_positive else bad(answer))
-    _print_rows(diagnosis.study.name, [*_found(diagnosis), *_bettered(diagnosis)])
-    _print_written(folder, written)
-
-
-def _estimated(estimate: Estimate) -> str:
-    is_known = math.isfinite(estimate.std)
-    doubt = f"± {estimate.std:.2g}" if is_known else "(not determined by these rows)"
-    return f"{estimate.value:.4g} {doubt}"
-
-
-def _found(diagnosis: Diagnosis) -> Iterator[Row]:
-    """Yield the effects, what speaks against the model, and what was withdrawn."""
-    if diagnosis.measured.thinned:
-        yield "a long log", diagnosis.measured.thinned
-    if not diagnosis.measured.has_poses:
-        yield "poses", escape(diagnosis.measured.origin_of_poses)
-    for finding in diagnosis.findings:
-        values = ", ".join(f"{name} = {_estimated(e)}" for name, e in finding.parameters.items())
-        yield f"[bold]{escape(finding.effect.key)}[/]", escape(values)
-        if finding.rivals or diagnosis.has_no_rivals(finding):
-            yield "  or", escape(", ".join(finding.rivals) or "none in the list")
-    if diagnosis.is_smooth:
-        yield "together", "may be one cause that goes smoothly with the place"
-    if not diagnosis.findings:
-        yield "effects", "none found"
-    structure, place = diagnosis.structure_after, diagnosis.left_in
-    goes_with = [e.text for e in structure.events]
-    goes_with += [
-        f"{c.name}, {c.fraction_of_variance:.0%} of its variance" for c in structure.present[:1]
-    ]
-    times = f"{max(diagnosis.scatter.values(), default=0.0):.2g} times the noise"
-    for label, texts in (
-        (bad("no time for"), diagnosis.not_tried),
-        (bad("unexplained"), [f"goes with {text}" for text in goes_with]),
-        ("  most in", [f"{place.reading}, rows {', '.join(in_runs(place.rows))}"] if place else []),
-        ("  check next", diagnosis.next_checks),
-        (bad("scatter"), [f"{times}: more than the sensors explain"] * diagnosis.is_scattered),
-        (bad("not plausible"), diagnosis.doubts),
-        ("withdrawn", [f"{gone.effect}: {gone.reason.value}" for gone in diagnosis.withdrawn]),
-    ):
-        yield from ((label, escape(text)) for text in texts)
-
-
-def _bettered(diagnosis: Diagnosis) -> Iterator[Row]:
-    """Yield the errors and the cables before and after."""
-    for kind, *errors in diagnosis.errors:
-        was, now = (kind.scale * error.heldout.value for error in errors)
-        yield f"{kind.name} error", f"{was:.3g} → {now:.3g} {kind.unit} on unseen rows"
-    if diagnosis.left_out:
-        yield "  left out", diagnosis.left_out
-    for each in diagnosis.sessions:
-        is_strange = each.session in diagnosis.strange_sessions
-        why = f": {bad('not explained by the machine that others fit')}" * is_strange
-        yield f"  session {each.session}", f"{each.in_words}{why}"
-    if diagnosis.not_held:
-        yield "  rows not held", escape(f"{diagnosis.not_held}; not counted")
-    choices = (("cable before", diagnosis.design_before), ("after", diagnosis.design_after))
-    for label, choice in choices:
-        if choice is not None:
-            named = f"{choice.grade}, {choice.size_id}, {choice.utilisation:.1%} used"
-            yield label, escape(named) if choice.grade else "none"
-    uses = (("  the one before", diagnosis.kept), ("on the machine", diagnosis.mounted_after))
-    for label, use in uses:
-        if use is not None:
-            too_much = "" if use.utilisation <= 1.0 else f": {bad('too much')}"
-            yield label, f"{use.utilisation:.1%} used{too_much}"
-
-
-def print_check(check: Check, folder: Path, written: Sequence[str]) -> None:
-    """Print what is left without and with the declared effects, and what to make of it."""
-    _print_rows(check.study.name, _left(check), "error", "model", "rms", "95 %", "median")
-    for line in check.remarks():
-        show(line, markup=False)
-    _print_written(folder, written)
-
-
-def _left(check: Check) -> Iterator[Row]:
-    from designer.model.measurements import KINDS
-
-    for kind in KINDS:
-        for label, model in check.models:
-            if deviation := kind.of(model):
-                figures = (deviation.rms.value, *deviation.rms.interval, deviation.median)
-                value, low, high, median = (f"{kind.scale * x:.4g}" for x in figures)
-                yield rf"{kind.name} \[{kind.unit}]", label, value, f"{low} to {high}", median
-    for label, model in check.models:
-        if model.foretold is not None and model.foretold.n_solved:
-            place = model.foretold.position_m
-            value, low, high = (f"{1e3 * x:.4g}" for x in (place.value, *place.interval))
-            yield r"pose by lengths \[mm]", label, value, f"{low} to {high}", ""
-
-
 def print_grades(grades: Sequence[Grade]) -> None:
     """Print the list of grades, those of one publisher together."""
     table = bare_table(
@@ -403,7 +300,7 @@ def _range(start: float, last: float) -> str:
 
 def print_grade(grade: Grade) -> None:
     """Print all that is known of one grade; a column that is empty is left out."""
-    _print_rows(grade.id, ((name, escape(text)) for name, text in facts(grade)))
+    print_rows(grade.id, ((name, escape(text)) for name, text in facts(grade)))
     price = f"price [{grade.currency}/m]"
     sizes = bare_table(
         *("size", "d [mm]", "MBL [kN]", "mass [kg/m]", "A [mm²]", "EA [MN]", price, "doubt")

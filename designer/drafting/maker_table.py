@@ -10,10 +10,10 @@ from itertools import islice
 from pathlib import Path
 
 from designer.documents.opened import open_input, reason
+from designer.documents.table import cells_of
 from designer.drafting.pdf_table import pdf_rows
 from designer.errors import Fault, InputError, visible
 from designer.grades.grade import DIMENSIONS, MAX_SIZES
-from designer.measured.table import cells_of
 from designer.units import QuantityError, describe, read_quantity
 
 SIZE = "id"

@@ -13,8 +13,8 @@ from importlib import import_module
 from typing import Any, BinaryIO
 
 from designer.documents.opened import apart
+from designer.documents.table import library_of
 from designer.errors import InputError, one_line
-from designer.measured.table import library_of
 
 _LARGEST_BYTES = 50_000_000
 _MOST_PAGES = 200

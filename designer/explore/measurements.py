@@ -11,8 +11,8 @@ from designer.arrays import FloatArray, IntArray
 from designer.diagnosis.case import case_of, first_noise
 from designer.diagnosis.diagnose import diagnose_study
 from designer.diagnosis.problem import Problem, channel_names
+from designer.diagnosis.study import diagnosed_config
 from designer.explore.question import Question
-from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
 from designer.model.measurements import Measured
 
@@ -113,8 +113,8 @@ def diagnosis_answer(question: Question, progress: Callable[[str], None]) -> Dia
 
     Raises InputError if the study has no measurements, or the data are not as they should be.
     """
-    from designer.report.diagnosis.report import verdict
-    from designer.report.diagnosis.words import fitted_values, quantities
+    from designer.diagnosis.report import verdict
+    from designer.diagnosis.words import fitted_values, quantities
 
     study = question.study
     measured = read_measured(study)

@@ -25,11 +25,12 @@ from designer.model.workspace import Workspace
 from designer.plugins import Plugins
 from designer.progress import Advance
 from designer.selection.candidate import Candidate, candidates_of
-from designer.selection.cases import FEW_AT_FIRST, converge_stiffness
+from designer.selection.cases import converge_stiffness
 from designer.selection.reeving import Allowance
 from designer.selection.select import at_samples
 from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Study, as_built_by, require_enough_cables
+from designer.workspace.effort import COARSE
 from designer.workspace.section import section_of_pose
 
 Quick = Literal["pose", "coarse", "fine", "ropes", "residuals", "worst", "requirements"]
@@ -182,7 +183,7 @@ class Question:
         self, workspace: Workspace, selection: Selection, grades: Sequence[Grade]
     ) -> list[Candidate]:
         """Return the sizes of these grades with what they meet at few samples."""
-        sampled = workspace.with_fewer_samples(FEW_AT_FIRST)
+        sampled = workspace.with_fewer_samples(COARSE.slow)
         return at_samples(sampled, selection, grades, self.built, self.study.load_cases)
 
     @cached_property

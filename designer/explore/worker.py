@@ -32,7 +32,6 @@ from designer.explore.answers import (
     requirements_alone,
     worst_answer,
 )
-from designer.explore.measurements import residuals
 from designer.explore.question import (
     Kind,
     Long,
@@ -45,7 +44,7 @@ from designer.explore.question import (
 )
 from designer.explore.session import Context
 from designer.io.process import SPAWN, end_with_parent, settle_in
-from designer.plugins import find_plugins
+from designer.plugins import find_plugins, require_ring
 from designer.progress import interrupted_by
 
 Deliver = Callable[[Message], None]
@@ -183,12 +182,16 @@ class Worker:
         def report(task: str, steps: int, total: int) -> None:
             self._tell(Message(request, "progress", None, task, steps, total))
 
+        if request.kind == "residuals":
+            require_ring("diagnose")
+            from designer.explore.measurements import residuals
+
+            return residuals(question)
         answers: dict[Kind, Callable[[], Any]] = {
             "pose": lambda: pose_answer(question, **options),
             "coarse": lambda: map_answer(question, fine=False, **options),
             "fine": lambda: map_answer(question, fine=True, **options),
             "ropes": lambda: quick_ropes(question),
-            "residuals": lambda: residuals(question),
             "requirements": lambda: requirements_alone(question),
             "worst": lambda: worst_answer(question, ThrottledReporter(report)),
         }
@@ -358,15 +361,18 @@ def work(connection: Connection) -> None:
 def _answer(task: dict[str, Any], reporter: ThrottledReporter) -> Any:
     from designer.explore.answers import full_ropes
     from designer.explore.export import export, optimised_study, sweep_study
-    from designer.explore.measurements import diagnosis_answer
 
     answers: dict[Long, Callable[..., Any]] = {
         "select": full_ropes,
-        "diagnose": diagnosis_answer,
         "export": export,
         "optimise": optimised_study,
         "sweep": sweep_study,
     }
+    if task["kind"] == "diagnose":
+        require_ring("diagnose")
+        from designer.explore.measurements import diagnosis_answer
+
+        answers["diagnose"] = diagnosis_answer
     plugins = find_plugins(task["with_plugins"])
     path = Path(task["path"])
     reading = Context(path, load_effects(plugins), plugins).read(task["text"])

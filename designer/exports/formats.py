@@ -23,28 +23,14 @@ from designer.study import Study
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """One format.
+    """One format."""
 
-    Parameters
-    ----------
-    name : str
-        As `designer export --to` takes it.
-    write : callable
-        From the robot and the stem of the files' names to the files.
-    ending : str
-        How the first of them ends.
-    needs_cables, needs_ropes : bool
-        Whether the design is solved for it, and whether that must come to ropes of a catalogue.
-    needs_maps : bool
-        Whether it shows maps of the workspace.
-    """
-
-    name: str
-    write: Callable[[ExportedRobot, str], Export]
-    ending: str
-    needs_cables: bool = True
-    needs_ropes: bool = False
-    needs_maps: bool = False
+    name: str  #: as `designer export --to` takes it
+    write: Callable[[ExportedRobot, str], Export]  #: from robot and stem of the files' names
+    ending: str  #: of the first file's name
+    needs_cables: bool = True  #: whether the design is solved for it
+    needs_ropes: bool = False  #: whether that must come to ropes of a catalogue
+    needs_maps: bool = False  #: whether it shows maps of the workspace
 
 
 FORMATS = {

@@ -11,16 +11,16 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.documents.bounds import BOUNDS
-from designer.documents.opened import open_input, reason
-from designer.errors import Fault, InputError
-from designer.measured.assign import (
+from designer.documents.columns import (
     POSITION,
     ROTATION_VECTOR,
     cable_of,
     length_names,
     unit_faults,
 )
-from designer.measured.table import LogTable, RawColumn, read_table
+from designer.documents.opened import open_input, reason
+from designer.documents.table import LogTable, RawColumn, read_table
+from designer.errors import Fault, InputError
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.study import Study

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from designer.documents.bounds import BOUNDS, Bound
 from designer.documents.opened import open_input, reason
+from designer.documents.table import cells_of
 from designer.errors import Fault, InputError
-from designer.measured.table import cells_of
 from designer.model.cable import Offer, PriceList
 from designer.spelling import did_you_mean
 from designer.units import LENGTH, QuantityError, read_quantity

@@ -1,4 +1,4 @@
-"""Results as files: ``result.json``, what stands beside it, and a config after a diagnosis."""
+"""Results as files: ``result.json``, and what stands beside it."""
 
 from __future__ import annotations
 
@@ -9,23 +9,16 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from designer.analysis.analyse import Analysis
 from designer.analysis.reactions import reactions_csv
 from designer.analysis.result_json import candidates_csv
-from designer.diagnosis.design import declared_by, declared_of_session, spreads_of
-from designer.diagnosis.result import Diagnosis, effects_table
 from designer.documents import document
 from designer.documents.document import DEEPEST_NESTING, Flaw, Keys
-from designer.documents.edits import scalar, with_section, with_value
 from designer.documents.fields import MOST_FAULTS
 from designer.documents.opened import read_input
 from designer.documents.plain import RESULT_FORMAT, Json, why_unreadable
 from designer.errors import Fault, InputError
-from designer.io.config.moved import moved_to, path_from
 from designer.io.output import write_whole
-from designer.model.measurements import KINDS
 from designer.units import describe
 
 _RESULT = "a result.json that `designer report` wrote"
@@ -119,61 +112,3 @@ def _flaws(value: object, keys: Keys = (), expected: str = "") -> Iterator[Flaw]
         yield Flaw(keys, "is too large, or no number", "a finite number")
     if any(isinstance(text, str) and _HALF_LETTER.search(text) for text in (value, *keys[-1:])):
         yield Flaw(keys, "holds half a letter", "text in Unicode")
-
-
-def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None) -> str:
-    """Return the text of the config with the whole model in it.
-
-    What was fitted and what was found go under ``effects``, noise that was estimated under
-    ``measurements.noise``, deviations of what a design draws under ``uncertainty``. The rest stays
-    as its author laid it out, but for paths in it, which are rewritten for a config that lies in
-    ``folder``. The ``text`` of the config is what its file holds, if left out.
-    """
-    source, measured = diagnosis.study.source.path, diagnosis.study.measurements
-    assert measured is not None
-    if text is None:
-        text = document.decode(read_input(source), str(source))
-    text = moved_to(folder, text, document.document_of(text.encode(), str(source)), source.parent)
-    # The data are not always those that the config names.
-    places: dict[Keys, str] = {}
-    if not measured.sessions:
-        files = [scalar(path_from(folder, path)) for path in measured.files]
-        places["file",] = files[0] if len(files) == 1 else f"[{', '.join(files)}]"
-    for number in range(len(measured.sessions)):
-        declared = effects_table(declared_of_session(diagnosis, number + 1))
-        if declared:
-            places["sessions", number, "effects"] = json.dumps(declared)
-    if noise := _estimated_noise(diagnosis):
-        places |= {("noise", kind): str(size) for kind, size in noise.items()}
-        places["noise", "estimated"] = f"[{', '.join(noise)}]"
-    for place, value in places.items():
-        text = with_value(text, ("measurements", *place), value)
-    for name, spread in spreads_of(diagnosis).items():
-        value = f"{{standard_deviation: {spread:.3g}}}"
-        text = with_value(text, ("uncertainty", name), value)
-    effects = effects_table(declared_by(diagnosis))
-    return with_section(text, "effects", effects, _origin(diagnosis))
-
-
-def _origin(diagnosis: Diagnosis) -> str:
-    """Return where the effects come from, for whoever reads the config later."""
-    measured = diagnosis.study.measurements
-    assert measured is not None
-    digests = ", ".join(digest[:16] for digest in diagnosis.measured.sha256.split(", "))
-    lines = [f"From the diagnosis of {measured.file_names}, SHA-256 {digests}"]
-    for kind, *errors in diagnosis.errors:
-        was, now = (kind.scale * error.heldout.value for error in errors)
-        lines.append(f"{kind.name} error on unseen rows {was:.3g} -> {now:.3g} {kind.unit}")
-    return "; ".join(lines)
-
-
-def _estimated_noise(diagnosis: Diagnosis) -> dict[str, float]:
-    """Return the noise that nobody declared, of readings that there are."""
-    measurements = diagnosis.study.measurements
-    assert measurements is not None
-    declared = measurements.declared_noise.keys() - {*measurements.estimated_noise}
-    return {
-        kind.name: float(kind.of(diagnosis.noise))
-        for kind in KINDS
-        if kind.name not in declared and np.isfinite(kind.of(diagnosis.measured)).any()
-    }

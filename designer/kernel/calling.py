@@ -95,7 +95,7 @@ class CableFigures(NamedTuple):
     pulley_radius: float = 0.0
 
 
-class Meets(NamedTuple):
+class LoadSummary(NamedTuple):
     """What cables meet in some poses at worst; the kernel raises or increases all but `failed`.
 
     Parameters

@@ -14,7 +14,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import TOLERANCE
-from designer.kernel.calling import CableFigures, Meets, Situation
+from designer.kernel.calling import CableFigures, LoadSummary, Situation
 from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.lanes import (
     OVERLOAD,
@@ -49,7 +49,7 @@ def sweep_sizes(
     figures: CableFigures,
     cells: IntArray,
     leaves_out_hanging: bool,
-    meets: Meets,
+    meets: LoadSummary,
 ) -> None:
     """Solve all poses with the sizes from `first` to `last`, and keep what they ask for.
 

@@ -9,22 +9,25 @@ from pathlib import Path
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, frozen_array
-from designer.documents.opened import open_input, reason
-from designer.errors import Fault, InputError
-from designer.measured.assign import (
+from designer.documents.columns import (
     POSITION,
     QUATERNION,
     TEMPERATURE_NAME,
     TIME_NAME,
     WIND,
+    length_names,
+    tension_names,
+)
+from designer.documents.opened import open_input, reason
+from designer.documents.table import LogTable, is_bag, read_bag, read_table
+from designer.errors import Fault, InputError
+from designer.measured.assign import (
     Assigned,
     assign,
     complete,
     coordinates_of,
     exclude_coordinates,
-    length_names,
     orientation,
-    tension_names,
 )
 from designer.measured.rows import (
     EPOCH_S,
@@ -37,7 +40,6 @@ from designer.measured.rows import (
     utc,
 )
 from designer.measured.sense import sense_faults, unit_faults
-from designer.measured.table import LogTable, is_bag, read_bag, read_table
 from designer.model.measurements import KINDS, Measured, Measurements
 from designer.model.robot import Poses
 from designer.study import Study
@@ -48,7 +50,7 @@ MOST_FAULTS = 100
 def read_measured(study: Study) -> Measured:
     """Return what was measured on the machine that the study describes.
 
-    Columns go by the names of `designer.measured.assign`; the config's ``measurements.columns``
+    Columns go by the names of `designer.documents.columns`; the config's ``measurements.columns``
     translates others. Cells that are empty, ``nan`` or ``NA`` hold nothing. Of a long log all rows
     are checked, and `designer.measured.rows.MOST_ROWS` returned.
 

@@ -15,17 +15,17 @@ from pathlib import Path
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
-from designer.errors import Fault
-from designer.measured.assign import (
+from designer.documents.columns import (
     POSITION,
     TIME_NAME,
-    Assigned,
     dimension_of,
     is_rotation,
     length_names,
     tension_names,
 )
-from designer.measured.table import MOST_ALIKE, LogTable, RawColumn, is_number
+from designer.documents.table import MOST_ALIKE, LogTable, RawColumn, is_number
+from designer.errors import Fault
+from designer.measured.assign import Assigned
 from designer.model.measurements import POSES, Measurements
 from designer.spelling import in_runs
 from designer.units import ANGLE, FORCE, LENGTH, NUMBER, SPEED, TEMPERATURE, describe

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.documents.columns import POSITION, TEMPERATURE_NAME, length_names, tension_names
+from designer.documents.table import LogTable
 from designer.errors import Fault
-from designer.measured.assign import POSITION, TEMPERATURE_NAME, length_names, tension_names
-from designer.measured.table import LogTable
 from designer.model.measurements import Measured
 from designer.model.robot import Poses, Robot
 from designer.statics.geometry import cable_geometry

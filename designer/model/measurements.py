@@ -27,7 +27,7 @@ class LogColumn:
     """What one column of a log is to us: ``scale`` · reading + ``offset``."""
 
     name: str  #: Its name in the log
-    #: Our name for it, see `designer.measured.assign`; ``ignore`` or ``covariate`` for none
+    #: Our name for it, see `designer.documents.columns`; ``ignore`` or ``covariate`` for none
     target: str
     #: From the log's numbers to ours, in the unit that our name ends in
     scale: float = 1.0

@@ -28,8 +28,7 @@ from designer.progress import SILENT
 from designer.selection.candidate import Candidate, candidates_of, offered, undominated
 from designer.selection.cases import governing
 from designer.selection.compare import Screen
-from designer.selection.criteria import criteria_of
-from designer.selection.requirements import CaseLoads, evaluate
+from designer.selection.criteria import CaseLoads, criteria_of, evaluate
 from designer.selection.select import at_samples
 from designer.selection.verify import verify_sizes
 from designer.sizing.newton import size_poses

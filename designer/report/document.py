@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -51,21 +51,11 @@ class ControlBox(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """Head of a document.
+    """Head of a document."""
 
-    Parameters
-    ----------
-    boxes : tuple of ControlBox
-        Number, revision and names, those that the study gives.
-    logo : str
-        A picture as a data URI; may be empty.
-    identity : str
-        Digests of config, grades and measured data.
-    """
-
-    boxes: tuple[ControlBox, ...] = ()
-    logo: str = ""
-    identity: str = ""
+    boxes: tuple[ControlBox, ...] = ()  #: number, revision and names, those that the study gives
+    logo: str = ""  #: a picture as a data URI; may be empty
+    identity: str = ""  #: digests of config, grades and measured data
 
 
 NO_CONTROL = Control()
@@ -73,40 +63,20 @@ NO_CONTROL = Control()
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """A whole document; the templates know it as ``report``.
+    """A whole document; the templates know it as ``report``."""
 
-    Parameters
-    ----------
-    name : str
-        ``report`` or ``diagnosis``: the name of its files, and of the folder of its own templates.
-    title : str
-        Name of the study.
-    document : str
-        What it is, such as ``Cable design report``.
-    generator : str
-        This program and its version.
-    created, created_iso : str
-        Date and time of the results, to read and as ISO 8601.
-    sections : tuple of Section
-        All sections, in order.
-    missing : str
-        Why pictures in space are left out, and what to install; empty where they are not.
-    control : Control
-        Number, revision, names, logo, digests.
-    problems : tuple of str
-        Which sections of plugins are left out and why, one line each.
-    """
-
+    #: ``report`` or ``diagnosis``: the name of its files, and of the folder of its own templates
     name: str
-    title: str
-    document: str
-    generator: str
-    created: str
-    created_iso: str
-    sections: tuple[Section, ...]
-    missing: str = ""
+    title: str  #: name of the study
+    document: str  #: what it is, such as ``Cable design report``
+    generator: str  #: this program and its version
+    created: str  #: date and time of the results, to read
+    created_iso: str  #: the same as ISO 8601
+    sections: tuple[Section, ...]  #: all sections, in order
+    missing: str = ""  #: why pictures in space are left out, and what to install
     control: Control = NO_CONTROL
-    problems: tuple[str, ...] = ()
+    problems: tuple[str, ...] = ()  #: of sections and filters of plugins that are left out
+    filters: Mapping[str, Callable[..., object]] | None = None  #: beside ours, for its templates
 
     @classmethod
     def of(
@@ -121,6 +91,7 @@ class Report:
         missing: str = "",
         control: Control = NO_CONTROL,
         problems: Iterable[str] = (),
+        filters: Mapping[str, Callable[..., object]] | None = None,
     ) -> Report:
         """Return a report; sections that are None are left out."""
         return cls(
@@ -134,6 +105,7 @@ class Report:
             missing,
             control,
             tuple(problems),
+            filters,
         )
 
     def section(self, section_id: str) -> Section:

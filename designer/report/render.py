@@ -52,7 +52,7 @@ def render_html(
     jinja2.TemplateError
         If a template of the user is faulty.
     """
-    templates = environment(user_folder)
+    templates = environment(user_folder, report.filters)
     sections = []
     for section in report.sections:
         sections.append(rendered(section, report, templates, paged=paged))

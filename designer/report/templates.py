@@ -8,19 +8,23 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache, wraps
 from inspect import isfunction
+from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import FunctionType, ModuleType
+from typing import TYPE_CHECKING, Any
 
 from designer.errors import Fault, InputError, one_line
+from designer.plugins import Plugins, find_plugins, named, registered
 from designer.report import format as fmt
 from designer.report import phrases
-from designer.report.diagnosis import words
 from designer.resources import data_folder, missing_library
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
+Filter = Callable[..., object]
 _KINDS = ("*.j2", "*.css")
 
 
@@ -30,14 +34,17 @@ def why_no_pdf() -> str:
     return f"The PDF is left out: {missing}." if missing else ""
 
 
-def environment(user_folder: Path | None = None) -> Environment:
+def environment(
+    user_folder: Path | None = None, filters: Mapping[str, Filter] | None = None
+) -> Environment:
     """Return the template environment: escaping on, and every undefined name an error.
 
     Templates of ``user_folder`` come before the shipped ones of the same name; there, the shipped
     ones are also known under ``default/``, so that ``page.html.j2`` can extend
     ``default/page.html.j2``. ``report/inputs.html.j2`` would show the section ``inputs``.
     The functions of `designer.report.format` are filters, such as ``{{ mass_kg | kilograms }}``;
-    they also stand under ``fmt``, for those of several values.
+    they also stand under ``fmt``, for those of several values. So are ``filters``, those of our
+    rings if left out.
     """
     from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined
 
@@ -54,20 +61,45 @@ def environment(user_folder: Path | None = None) -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    templates.filters = {**_filters(), **templates.filters}  # none of Jinja's is replaced
+    added = _filters_of_rings() if filters is None else filters
+    templates.filters = {**added, **_FILTERS, **templates.filters}  # none of Jinja's is replaced
     templates.tests["finite"] = math.isfinite
     templates.globals |= {"fmt": fmt, "why_no_pdf": why_no_pdf}
     return templates
 
 
-def _filters() -> dict[str, Callable[..., object]]:
-    """Return the public functions of the rooms of words, by name."""
-    return {
-        name: function
-        for module in (fmt, phrases, words)
-        for name, function in vars(module).items()
-        if isfunction(function) and not name.startswith("_")
-    }
+def public_functions(module: ModuleType) -> list[Filter]:
+    """Return the functions of a module of words."""
+    functions = vars(module).items()
+    return [item for name, item in functions if isfunction(item) and not name.startswith("_")]
+
+
+_FILTERS = {item.__name__: item for module in (fmt, phrases) for item in public_functions(module)}
+
+
+def filters_of(plugins: Plugins) -> tuple[dict[str, Filter], list[str]]:
+    """Return the filters of our rings and of plugins, and a line for each that is left out."""
+    functions, problems = registered(
+        plugins, "register_template_filters", FunctionType, attrgetter("__name__"), _FILTERS
+    )
+    return {name: _guarded(name, *item) for name, item in functions.items()}, problems
+
+
+@cache
+def _filters_of_rings() -> dict[str, Filter]:
+    return filters_of(find_plugins(with_plugins=False))[0]
+
+
+def _guarded(name: str, function: Filter, label: str) -> Filter:
+    from jinja2 import pass_context
+
+    @pass_context  # else what it makes of a constant is kept in the code of a template
+    @wraps(function)
+    def run(_: object, *values: Any, **options: Any) -> object:
+        with named(label, f"fails in the filter {name}"):
+            return function(*values, **options)
+
+    return run
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +140,7 @@ def check_templates(folder: Path) -> None:
         if not (path.is_file() or path.is_dir()):
             raise InputError([Fault(str(path), None, "", "is no file", "a template or a folder")])
     with told_in_one_line(folder):
-        own = environment(folder)
+        own = environment(folder, filters_of(find_plugins())[0])
         for name in names:
             own.get_template(name.as_posix())
 

@@ -41,16 +41,12 @@ from designer.proof.prove import Budget, Proof, prove
 from designer.selection.verify import Sampled, Verification, refined_each, verify_sizes
 from designer.statics.cable_loss import CableLoss
 from designer.statics.inverse import Statics, solve_sagging
-from designer.statics.sizes import is_quick
+from designer.statics.sizes import has_fast_solver
 from designer.workspace.demand import is_left_out, rope_demand, settled, tension_demand
+from designer.workspace.effort import CHOSEN_SETTLING, COARSE
 from designer.workspace.refine import LIGHT, refine
 from designer.workspace.section import in_lockstep
 
-FEW_AT_FIRST, FEW_OF_QUICK = 128, 2048
-"""Samples that candidates are tried at first where all of them take long; on robots that are quick
-to solve, and for the worst pose of a continuous family."""
-FEW_SAMPLES, _MOST_SAMPLES = 64, 256
-"""Poses in which lengths are kept, for each candidate and for the chosen one."""
 _CLOSE = 0.95
 """Of the utilisation that governs: from where on other cases and directions are searched, too."""
 _MAX_ITERATIONS, _MAX_SECANTS = 6, 20
@@ -238,9 +234,8 @@ class Cases:
 
         On robots that are slow to solve only where there is more than the static case.
         """
-        if is_quick(self.robot):
-            return replace(self, sample_limit=FEW_OF_QUICK)
-        return replace(self, sample_limit=FEW_AT_FIRST) if len(self.load_cases) > 1 else self
+        is_coarse = has_fast_solver(self.robot) or len(self.load_cases) > 1
+        return replace(self, sample_limit=COARSE.of(self.robot)) if is_coarse else self
 
     @property
     def sample_count(self) -> int:
@@ -266,24 +261,24 @@ class Cases:
         """
         results: list[list[CaseResult]] = [[] for _ in cables[0]]
         for case, of_case in zip(self.load_cases, cables, strict=True):
-            whole = self.workspace.of_case(case)
+            case_workspace = self.workspace.of_case(case)
             for loaded in zip(*(case.on(self.robot, cable) for cable in of_case), strict=True):
                 alive = [
                     k
                     for k, so_far in enumerate(results)
                     if all(result.verification.holds for result in so_far)
                 ]
-                tried, workspace = [loaded[k] for k in alive], whole
-                keeps = any(candidate.keeps_lengths for candidate in tried)
+                loads, workspace = [loaded[k] for k in alive], case_workspace
+                keeps = any(candidate.keeps_lengths for candidate in loads)
                 if self.sample_limit is not None and not keeps:
-                    workspace = whole.with_fewer_samples(self.sample_limit)
-                solved = _at_converged_stiffness(tried, workspace, progress)
-                if not tried or case.changes_robot or keeps:  # not counted on the way
+                    workspace = case_workspace.with_fewer_samples(self.sample_limit)
+                solved = _at_converged_stiffness(loads, workspace, progress)
+                if not loads or case.changes_robot or keeps:  # not counted on the way
                     progress(self.sample_count)
                 for k, result in zip(alive, solved, strict=True):
-                    is_complete = workspace is whole and result.sampled.is_complete
+                    is_complete = workspace is case_workspace and result.sampled.is_complete
                     sampled = replace(result.sampled, is_complete=is_complete)
-                    results[k].append(replace(result, workspace=whole, sampled=sampled))
+                    results[k].append(replace(result, workspace=case_workspace, sampled=sampled))
         return [tuple(of_candidate) for of_candidate in results]
 
 
@@ -309,7 +304,7 @@ def over_samples(
     if not loaded:
         return []
     if any(candidate.keeps_lengths for candidate in loaded):
-        return [_over_kept_lengths(candidate, workspace, FEW_SAMPLES) for candidate in loaded]
+        return [_over_kept_lengths(candidate, workspace, COARSE.settling) for candidate in loaded]
     # Which poses are left out the compiled sweep cannot tell: its down is the load.
     if workspace.hangs_below == "exclude" and loaded[0].robot.cable_load_direction is not None:
         return [_by_true_vertical(candidate, workspace) for candidate in loaded]
@@ -367,17 +362,17 @@ def _sampled(
 
 def refine_governing(candidates: Sequence[Sequence[CaseResult]]) -> list[tuple[CaseResult, ...]]:
     """Search several candidates in one batch: what governs in full, cases near it lightly."""
-    near = [r for results in candidates for r in _near_governing(governing_directions(results))]
-    completed = _completed(near)
-    whole = [_replaced(results, completed) for results in candidates]
+    worst_directions = [governing_directions(results) for results in candidates]
+    completed = _completed([r for worst in worst_directions for r in _near_governing(worst)])
+    complete = [_replaced(results, completed) for results in candidates]
     refined = _refined(
         [
             (result, result is not governing(results))
-            for results in whole
+            for results in complete
             for result in _near_governing(governing_directions(results))
         ]
     )
-    return [_replaced(results, refined) for results in whole]
+    return [_replaced(results, refined) for results in complete]
 
 
 def refine_all(results: Sequence[CaseResult]) -> tuple[CaseResult, ...]:
@@ -390,8 +385,10 @@ def refine_all(results: Sequence[CaseResult]) -> tuple[CaseResult, ...]:
     results = _replaced(results, _completed(results))
     refined: dict[CaseResult, CaseResult] = {}
     for worst in steps("load cases", governing_directions(results)):
-        near = _near_governing([result for result in results if result.case is worst.case])
-        refined |= _refined([(result, result is not worst) for result in near])
+        near_governing = _near_governing(
+            [result for result in results if result.case is worst.case]
+        )
+        refined |= _refined([(result, result is not worst) for result in near_governing])
     passed: list[CaseResult] = []  # states that such searches have come through
 
     def worsen(results: Sequence[CaseResult]) -> list[CaseResult]:
@@ -441,9 +438,9 @@ def _completed(results: Sequence[CaseResult]) -> dict[CaseResult, CaseResult]:
     """Solve all samples where only some were; what each result that holds becomes."""
     completed: dict[CaseResult, CaseResult] = {}
     incomplete = [r for r in results if r.verification.holds and not r.sampled.is_complete]
-    for same in _by_load(incomplete):
-        solved = _at_converged_stiffness([result.loaded for result in same], same[0].workspace)
-        completed |= zip(same, solved, strict=True)
+    for batch in _by_load(incomplete):
+        solved = _at_converged_stiffness([result.loaded for result in batch], batch[0].workspace)
+        completed |= zip(batch, solved, strict=True)
     return completed
 
 
@@ -474,12 +471,12 @@ def _search(results: Sequence[CaseResult], *, is_light: bool) -> list[CaseResult
     fresh = [r for r in results if np.isfinite(r.utilisation) and not r.is_full]
     settling = [] if is_light else [r for r in fresh if r.loaded.keeps_lengths]
     refined = {result: _search_settled(result) for result in settling}
-    for same in _by_load([r for r in fresh if not r.loaded.keeps_lengths]):
-        robot, workspace = same[0].loaded.robot, same[0].workspace
-        cables, sampled = [r.loaded.cable for r in same], [r.sampled for r in same]
+    for batch in _by_load([r for r in fresh if not r.loaded.keeps_lengths]):
+        robot, workspace = batch[0].loaded.robot, batch[0].workspace
+        cables, sampled = [r.loaded.cable for r in batch], [r.sampled for r in batch]
         effort = LIGHT if is_light else None
         verifications = refined_each(robot, workspace, cables, sampled, effort)
-        for result, verification in zip(same, verifications, strict=True):
+        for result, verification in zip(batch, verifications, strict=True):
             refined[result] = replace(result, verification=verification, is_full=not is_light)
     return list(_replaced(results, refined))
 
@@ -498,7 +495,7 @@ def _by_load(results: Sequence[CaseResult]) -> Iterable[list[CaseResult]]:
 def _search_settled(result: CaseResult) -> CaseResult:
     """Search for the worst pose of a platform that settles on the lengths that it has."""
     loaded, workspace = result.loaded, result.workspace
-    sampled = _over_kept_lengths(loaded, workspace, _MOST_SAMPLES)
+    sampled = _over_kept_lengths(loaded, workspace, CHOSEN_SETTLING)
     demand = partial(tension_demand, loaded, workspace.hangs_below)
     starts = np.concatenate([result.sampled.worst_places, sampled.worst_places])
     (worst,) = refine(workspace.space, demand, starts, LIGHT)
@@ -591,7 +588,7 @@ def worst_load_direction(
     """
     step = 0.5
     while step > 1e-6:
-        trials = [(severity_of(turned), turned) for turned in loaded.perturbed(step)]
+        trials = [(severity_of(trial), trial) for trial in loaded.perturbed(step)]
         summit = _summit(loaded, severity, trials)
         if summit is not None:
             trials.append((severity_of(summit), summit))

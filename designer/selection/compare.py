@@ -18,9 +18,8 @@ from designer.model.load_case import STATIC
 from designer.model.verdict import Requirement, State
 from designer.progress import Reporter
 from designer.selection.candidate import MEANINGS, Candidate, Standing
-from designer.selection.criteria import Criterion
+from designer.selection.criteria import Criterion, Evaluation, evaluate, loads_of, strength_of
 from designer.selection.reeving import drum_of, sheave_ratio_of, spooling_of
-from designer.selection.requirements import Evaluation, evaluate, loads_of, strength_of
 from designer.selection.verify import Verification
 from designer.spelling import digits, position
 from designer.study import Objective, Selection
@@ -154,26 +153,20 @@ def dominator_of(row: FloatArray, rivals: FloatArray) -> int | None:
     return int(at[np.argmin(rivals[at, 0])]) if len(at) else None
 
 
-def settle_standing(
-    candidate: Candidate, front: Sequence[Candidate], objectives: Sequence[Objective]
-) -> None:
-    """Note what became of a candidate, and why: for all pages and files."""
-    candidate.standing, candidate.reason = _standing(candidate, front, objectives)
-
-
-def _standing(
+def standing_of(
     candidate: Candidate, front: Sequence[Candidate], objectives: Sequence[Objective]
 ) -> tuple[Standing, str]:
-    met, best = candidate.verification, front[0] if front else None
-    worst = f"{position(met.worst_place[:3])}{candidate.in_case}"
-    if candidate.sampled.not_held or np.isinf(met.utilisation):
+    """Return what became of a candidate, and why, for all pages and files."""
+    verification, best = candidate.verification, front[0] if front else None
+    worst = f"{position(verification.worst_place[:3])}{candidate.in_case}"
+    if candidate.sampled.not_held or np.isinf(verification.utilisation):
         why = "in every sample a cable hangs below the platform"
         return "not_held", (
             f"no equilibrium was found at {worst}" if candidate.sampled.not_held else why
         )
-    if not met.holds:
+    if not verification.holds:
         least = "" if candidate.sampled.is_complete else "at least "
-        percent = f"{least}{digits(100.0 * met.utilisation)} %"
+        percent = f"{least}{digits(100.0 * verification.utilisation)} %"
         return "too_thin", f"reaches {percent} of its allowable tension at {worst}"
     failed = rejection_words(candidate)
     if failed is not None and candidate is not best:
@@ -187,7 +180,7 @@ def _standing(
     candidate.dominated_by = front[number]
     is_complete = all(case.sampled.is_complete for case in candidate.cases)
     at = "the samples" if is_complete else "the samples tried first"
-    unsearched = "" if met.is_refined else f"; holds at {at}, not searched between them"
+    unsearched = "" if verification.is_refined else f"; holds at {at}, not searched between them"
     return "dominated", f"dominated by {front[number].label}{unsearched}"
 
 
@@ -232,15 +225,15 @@ def may_win(candidate: Candidate, objectives: Sequence[Objective]) -> bool:
 def _search_all(candidates: Sequence[Candidate], search: Search) -> bool:
     """Search for all that were not searched for yet; tell whether there were any."""
     fresh = [c for c in candidates if not c.verification.is_refined]
-    for candidate, met in zip(fresh, search(fresh) if fresh else (), strict=True):
+    for candidate, verification in zip(fresh, search(fresh) if fresh else (), strict=True):
         before_m = candidate.verification.longest_m.sum()
-        candidate.verification = met
-        longer = met.longest_m.sum() / before_m
+        candidate.verification = verification
+        longer = verification.longest_m.sum() / before_m
         candidate.figures = replace(
             candidate.figures,
             mass_kg=candidate.figures.mass_kg * longer,
             cost=candidate.figures.cost * longer,
-            max_tension_N=met.max_tension_N,
+            max_tension_N=verification.max_tension_N,
         )
     return bool(fresh)
 

@@ -26,11 +26,12 @@ from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.progress import Reporter
-from designer.selection.cases import FEW_OF_QUICK, CaseResult, Cases, governing, refine_all
+from designer.selection.cases import CaseResult, Cases, governing, refine_all
 from designer.selection.reeving import Allowance
 from designer.sizing.newton import size_poses
 from designer.study import Study
 from designer.workspace.demand import diameter_demand
+from designer.workspace.effort import COARSE
 from designer.workspace.refine import Worst, worst_over_samples
 from designer.workspace.section import (
     FIRST_TRIED_M,
@@ -92,12 +93,12 @@ def continuous_optima(
         materials = [families[k] for k in unsettled]
 
         def demand(places: FloatArray, search: IntArray, **how: bool) -> FloatArray:
-            each = MaterialsByPose(materials, search)
-            return diameter_demand(built.robot, each, hangs_below, places, **how)
+            materials_by_pose = MaterialsByPose(materials, search)
+            return diameter_demand(built.robot, materials_by_pose, hangs_below, places, **how)
 
         known = [worst_places[k] for k in unsettled]
         extremes = worst_over_samples(
-            workspace, demand, len(materials), most=FEW_OF_QUICK, known=known
+            workspace, demand, len(materials), most=COARSE.quick, known=known
         )
         for k, (worst,) in zip(unsettled, extremes, strict=True):
             # Where every pose is left out, nothing is served.

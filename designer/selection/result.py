@@ -21,9 +21,10 @@ from designer.proof.prove import Proof
 from designer.selection.candidate import Candidate, PriceEstimate, Standing
 from designer.selection.compare import AS_GOOD, changed_figures, preference_words, rejection_words
 from designer.statics.inverse import solve_sagging
-from designer.statics.sizes import is_quick
+from designer.statics.sizes import has_fast_solver
 from designer.study import Objective
 from designer.workspace.demand import is_counted
+from designer.workspace.effort import SLOW_COVERAGE, slow_positions
 
 Outcome = Literal["fits", "rejected", "too_thin", "no_finite_cable", "open"]
 """``rejected``: sizes are strong enough, but fail another requirement; ``too_thin``: no size holds;
@@ -37,8 +38,6 @@ WHY: Mapping[Standing, str] = {
     "not_held": "no equilibrium was found somewhere",
 }
 """Why sizes of a standing were not chosen; ``{}`` stands for the title of a requirement."""
-_FEW_PLACES, _FEW_POSITIONS = 1000, 100
-"""Asked at least of robots that are slow to solve: places, and positions in all orientations."""
 _BY_ID = {"json": lambda grade: {"grade": grade.id}}
 
 
@@ -212,10 +211,14 @@ def usable(
     """
     samples = 0
     served, lost = np.zeros((2, len(cables)))
-    few = max(_FEW_PLACES, _FEW_POSITIONS * workspace.orientations.count)
-    for some in workspace.places() if is_quick(robot) else [workspace.thinned(few)]:
-        each = np.stack([serves(robot, workspace, cable, some) for _, cable in cables])
-        at = each.reshape(len(cables), -1, workspace.orientations.count).all(axis=2)
+    if has_fast_solver(robot):
+        batches = workspace.places()
+    else:
+        count = slow_positions(workspace, SLOW_COVERAGE)
+        batches = iter([workspace.thinned(count * workspace.orientations.count)])
+    for batch in batches:
+        is_served = np.stack([serves(robot, workspace, cable, batch) for _, cable in cables])
+        at = is_served.reshape(len(cables), -1, workspace.orientations.count).all(axis=2)
         samples += at.shape[1]
         served += at.sum(axis=1)
         lost += (np.logical_or.accumulate(at, axis=0) & ~at).sum(axis=1)

@@ -42,7 +42,7 @@ from designer.selection.cases import (
     resettled,
     with_stiffness_of,
 )
-from designer.selection.compare import Screen, best_of, may_win, settle, settle_standing
+from designer.selection.compare import Screen, best_of, may_win, settle, standing_of
 from designer.selection.criteria import criteria_of
 from designer.selection.family import ContinuousOptimum, continuous_optima
 from designer.selection.reeving import Allowance, sheave_ratio_of, why_not_bent
@@ -56,12 +56,10 @@ from designer.selection.result import (
     usable,
 )
 from designer.selection.verify import Verification, verify_sizes
-from designer.statics.sizes import is_quick
+from designer.statics.sizes import has_fast_solver
 from designer.study import Selection
+from designer.workspace.effort import GUESS
 from designer.workspace.stiffness import smallest_stiffness_N_per_m
-
-_FEW = 16
-"""Places that tell which grade serves most, where each pose takes long: a guess is enough."""
 
 
 def select(
@@ -375,32 +373,27 @@ class _SelectionRun:
     ) -> GradeOutcome:
         """Return what became of a grade, and of each of its sizes."""
         for candidate in candidates:
-            settle_standing(candidate, front, self.selection.objectives)
+            standing = standing_of(candidate, front, self.selection.objectives)
+            candidate.standing, candidate.reason = standing
             candidate.requirements = self.screen.requirements(candidate)
             candidate.cases = governing_directions(candidate.cases)
+        outcome: Outcome = "fits"
+        if best is None or best.rejected_by is not None:
+            is_proved = optimum.verdict is not None and optimum.verdict.is_proved
+            outcome = "no_finite_cable" if is_proved else "open"
+            if any(candidate.verification.holds for candidate in candidates):
+                outcome = "rejected"
+            elif math.isfinite(optimum.diameter_m):
+                outcome = "too_thin"
         return GradeOutcome(
             grade=grade,
             family=optimum.family,
             continuous_diameter_m=optimum.diameter_m,
             candidates=tuple(candidates),
-            outcome=_outcome_of(candidates, best, optimum),
+            outcome=outcome,
             best=best,
             verdict=optimum.verdict,
         )
-
-
-def _outcome_of(
-    candidates: Sequence[Candidate], best: Candidate | None, optimum: ContinuousOptimum
-) -> Outcome:
-    """Return what became of a grade, the best of its sizes that hold among them."""
-    if best is not None and best.rejected_by is None:
-        return "fits"
-    if any(candidate.verification.holds for candidate in candidates):
-        return "rejected"
-    if math.isfinite(optimum.diameter_m):
-        return "too_thin"
-    proved = optimum.verdict is not None and optimum.verdict.is_proved
-    return "no_finite_cable" if proved else "open"
 
 
 def _usable(
@@ -418,11 +411,11 @@ def _usable(
         sized = [o for o in sized if o.grade is chosen.grade]
     if not sized:
         return None
-    places = workspace.thinned(_FEW)
+    places = workspace.thinned(GUESS)
 
     def most_served(outcome: GradeOutcome) -> float:
         cables = [c.cable for c in outcome.candidates]
-        if not is_quick(robot):
+        if not has_fast_solver(robot):
             return max(float(serves(robot, workspace, c, places).mean()) for c in cables)
         return max(s.served for s in verify_sizes(robot, workspace, cables, gives_up=False))
 

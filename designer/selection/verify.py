@@ -12,13 +12,13 @@ from itertools import chain, compress, pairwise
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.kernel.calling import Meets
+from designer.kernel.calling import LoadSummary
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.statics.inverse import solve_sagging
-from designer.statics.sizes import add_slowly, is_quick, meet
+from designer.statics.sizes import add_slowly, evaluate_sizes, has_fast_solver
 from designer.workspace.demand import rope_demand
 from designer.workspace.refine import (
     Demand,
@@ -30,36 +30,22 @@ from designer.workspace.refine import (
 
 _TOGETHER = 32
 """Cables whose hard poses are solved in one batch: memory stays flat."""
-_CELLS_A_SIDE, _TURNS = 6, 8
-_CELLS = _CELLS_A_SIDE**3 * _TURNS
+_CELLS_A_SIDE, _ROTATIONS = 6, 8
+_CELLS = _CELLS_A_SIDE**3 * _ROTATIONS
 """Parts of the space, by position and orientation; a search starts from the worst place of each."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Verification:
-    """What a given cable meets in the workspace.
-
-    Parameters
-    ----------
-    worst_place : array (n_coordinates,)
-        Place where its tension is largest, see `designer.model.space` [m, rad].
-    max_tension_N : float
-        The largest tension there [N]; inf if the pose cannot be held at all.
-    utilisation : float
-        Largest over allowable tension; the cable holds up to 1.
-    longest_m, shortest_m : array (n_cables,)
-        Longest and shortest unstrained length that each cable has [m]; the latter NaN where it was
-        not searched for.
-    is_refined : bool
-        Whether the extremes were searched for between the samples as well.
-    """
+    """What a given cable meets in the workspace."""
 
     worst_place: FloatArray
-    max_tension_N: float
-    utilisation: float
-    longest_m: FloatArray
-    shortest_m: FloatArray
-    is_refined: bool = True
+    """(n_coordinates,) where its tension is largest, see `designer.model.space` [m, rad]."""
+    max_tension_N: float  #: there [N]; inf if the pose cannot be held at all
+    utilisation: float  #: largest over allowable tension; the cable holds up to 1
+    longest_m: FloatArray  #: (n_cables,) longest unstrained length that each cable has [m]
+    shortest_m: FloatArray  #: (n_cables,) shortest; NaN where it was not searched for [m]
+    is_refined: bool = True  #: whether they were searched for between the samples as well
 
     @property
     def holds(self) -> bool:
@@ -74,34 +60,20 @@ NOT_TRIED = Verification(_UNKNOWN, np.nan, np.nan, _UNKNOWN, _UNKNOWN, is_refine
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sampled:
-    """What one cable meets over the samples of a workspace.
-
-    Parameters
-    ----------
-    worst_places : array (n_starts, n_coordinates)
-        Places where it is used most, one for each part of the space, the worst first; where it is
-        not held if there is such a pose [m, rad].
-    utilisation : float
-        Largest over allowable tension; inf if a pose cannot be held, or no sample counts.
-    longest_m : array (n_cables,)
-        Longest unstrained length that each cable needs [m].
-    samples, counted, overloaded : int
-        Samples tried, those that count, those of them above the allowable tension.
-    not_held : int
-        Samples and landmarks that cannot be held, at least.
-    is_complete : bool
-        Whether every sample of the study was tried; else the figures are those of some of them, or
-        of all up to where it was settled that the cable does not serve the workspace.
-    """
+    """What one cable meets over the samples of a workspace."""
 
     worst_places: FloatArray
-    utilisation: float
-    longest_m: FloatArray
-    samples: int
-    counted: int
-    overloaded: int
-    not_held: int
+    """(n_starts, n_coordinates) where it is used most, a place for each part of the space, the
+    worst first; where it is not held if there is such a pose [m, rad]."""
+    utilisation: float  #: largest over allowable tension; inf: a pose not held, or none counts
+    longest_m: FloatArray  #: (n_cables,) longest unstrained length that each cable needs [m]
+    samples: int  #: tried
+    counted: int  #: of them
+    overloaded: int  #: of those that count, above the allowable tension
+    not_held: int  #: samples and landmarks that cannot be held, at least
     is_complete: bool
+    """Whether every sample of the study was tried; else the figures are those of some of them, or
+    of all up to where it was settled that the cable does not serve the workspace."""
 
     @property
     def served(self) -> float:
@@ -190,7 +162,7 @@ def verify_sizes(
     """
     # The heavy ones first: slack cables are the harder, and start best from slack ones.
     order = sorted(range(len(cables)), key=lambda k: -cables[k].mean_density_kg_per_m)
-    space, is_slow = workspace.space, not is_quick(robot)
+    space, is_slow = workspace.space, not has_fast_solver(robot)
     totals = _Totals(len(cables), robot.n_cables, space.n_coordinates)
     samples = ((places, True) for places in workspace.places())
     chunk_size = 2**9 if is_slow else 2**11
@@ -199,25 +171,23 @@ def verify_sizes(
             places = chunk[start : start + chunk_size]
             settled = (totals.not_held > 0) | (totals.utilisation.max(axis=1) > 1.0)
             alive = [k for k in order if not (gives_up and settled[k])]
-            x, y, z, turn = space.cells(places, _CELLS_A_SIDE).T
-            cells = ((x * _CELLS_A_SIDE + y) * _CELLS_A_SIDE + z) * _TURNS + turn % _TURNS
+            x, y, z, rotation = space.cells(places, _CELLS_A_SIDE).T
+            cells = (
+                (x * _CELLS_A_SIDE + y) * _CELLS_A_SIDE + z
+            ) * _ROTATIONS + rotation % _ROTATIONS
             totals.samples += len(places) * counts
             while alive:
                 # Of a slow robot one by one: what refutes a cable refutes most of the others.
                 now, alive = (alive[:1], alive[1:]) if is_slow and gives_up else (alive, [])
-                meets, lost = _meet(
+                summary, lost = _summarise(
                     robot, workspace, places, [cables[k] for k in now], cells, gives_up
                 )
-                totals.add(now, places[lost], places, meets, counts)
-                if alive and _refutes(meets):
+                totals.add(now, places[lost], places, summary, counts)
+                if alive and (summary.failed.any() or (summary.utilisation > 1.0).any()):
                     place = totals.of(now[0]).worst_places[:1]
                     alive = _survivors(robot, workspace, cables, alive, place, totals)
             progress(len(places) if counts else 0)
     return [totals.of(k) for k in range(len(cables))]
-
-
-def _refutes(meets: Meets) -> bool:
-    return bool(meets.failed.any() or (meets.utilisation > 1.0).any())
 
 
 def _survivors(
@@ -230,38 +200,38 @@ def _survivors(
 ) -> list[int]:
     """Return which of the cables one place (1, n_coordinates) does not refute; note the others."""
     cell = np.zeros(1, dtype=np.int64)
-    meets, lost = _meet(robot, workspace, place, [cables[k] for k in alive], cell, True)
-    refuted = np.asarray(meets.failed.any(axis=1) | (meets.utilisation > 1.0).any(axis=1))
-    of_refuted = Meets._make(values[refuted] for values in meets)
+    summary, lost = _summarise(robot, workspace, place, [cables[k] for k in alive], cell, True)
+    refuted = np.asarray(summary.failed.any(axis=1) | (summary.utilisation > 1.0).any(axis=1))
+    of_refuted = LoadSummary._make(values[refuted] for values in summary)
     refuted_rows = list(compress(alive, refuted))
     totals.add(refuted_rows, place[lost[refuted]], place, of_refuted, counts=False)
     return list(compress(alive, ~refuted))
 
 
-def _meet(
+def _summarise(
     robot: Robot,
     workspace: Workspace,
     positions: FloatArray,
     cables: Sequence[Cable],
     cells: IntArray,
     gives_up: bool,
-) -> tuple[Meets, IntArray]:
+) -> tuple[LoadSummary, IntArray]:
     """Return what the cables meet, and of each a pose that it is not able to hold, if any (n,)."""
     poses, exclude = Poses.at(positions), workspace.hangs_below == "exclude"
-    meets = meet(robot, poses, cables, cells, _CELLS, leaves_out_hanging=exclude)
-    if not is_quick(robot):
-        return meets, meets.failed.argmax(axis=1)
+    summary = evaluate_sizes(robot, poses, cables, cells, _CELLS, leaves_out_hanging=exclude)
+    if not has_fast_solver(robot):
+        return summary, summary.failed.argmax(axis=1)
     lost = np.zeros(len(cables), dtype=np.int64)
-    open_rows = np.flatnonzero(meets.failed.any(axis=1))
+    open_rows = np.flatnonzero(summary.failed.any(axis=1))
     if gives_up and len(open_rows):  # the pose that refutes most of them first, of all at once
-        shared = meets.failed[open_rows] * meets.failed.sum(axis=0)
+        shared = summary.failed[open_rows] * summary.failed.sum(axis=0)
         lost[open_rows] = shared.argmax(axis=1)
         tried = Cables([cables[k] for k in open_rows.tolist()], np.arange(len(open_rows)))
         probed = solve_sagging(robot, poses.part(lost[open_rows]), tried)
         open_rows = open_rows[probed.is_solved]
     for first in range(0, len(open_rows), _TOGETHER):
         hard = {
-            row: np.flatnonzero(meets.failed[row]) for row in open_rows[first : first + _TOGETHER]
+            row: np.flatnonzero(summary.failed[row]) for row in open_rows[first : first + _TOGETHER]
         }
         # After the first 16 and after each 256, a look which cables have failed.
         for start, end in pairwise([0, 16, *range(256, len(positions) + 256, 256)]):
@@ -270,18 +240,18 @@ def _meet(
                 break
             rows = np.repeat(list(batches), [len(batch) for batch in batches.values()])
             at = np.concatenate(list(batches.values()))
-            add_slowly(meets, robot, poses, cables, rows, at, cells, exclude)
+            add_slowly(summary, robot, poses, cables, rows, at, cells, exclude)
             for row, batch in batches.items():
-                fails = batch[meets.failed[row, batch]]
+                fails = batch[summary.failed[row, batch]]
                 if len(fails):
                     lost[row] = fails[0]
                     if gives_up:
                         del hard[row]
-    return meets, lost
+    return summary, lost
 
 
 class _Totals:
-    """What all cables met so far."""
+    """What all cables meet in the poses solved so far."""
 
     def __init__(self, n_tried: int, n_cables: int, n_coordinates: int) -> None:
         self.samples = 0
@@ -297,19 +267,19 @@ class _Totals:
         rows: Sequence[int],
         lost: FloatArray,
         positions: FloatArray,
-        meets: Meets,
+        summary: LoadSummary,
         counts: bool,
     ) -> None:
-        """Add what cables met at positions, and where each is lost, if it is."""
+        """Add what cables meet at positions, and where each is lost, if it is."""
         self.tried[rows] += len(positions) * counts
-        row, cell = np.nonzero(meets.utilisation > self.utilisation[rows])
+        row, cell = np.nonzero(summary.utilisation > self.utilisation[rows])
         higher = np.asarray(rows, dtype=np.int64)[row], cell
-        self.utilisation[higher] = meets.utilisation[row, cell]
-        self.worst_places[higher] = positions[meets.pose[row, cell]]
-        self.longest_m[rows] = np.maximum(self.longest_m[rows], meets.longest_m)
-        self.counted[rows] += meets.counted * counts
-        self.overloaded[rows] += meets.overloaded * counts
-        fails = meets.failed.sum(axis=1)
+        self.utilisation[higher] = summary.utilisation[row, cell]
+        self.worst_places[higher] = positions[summary.pose[row, cell]]
+        self.longest_m[rows] = np.maximum(self.longest_m[rows], summary.longest_m)
+        self.counted[rows] += summary.counted * counts
+        self.overloaded[rows] += summary.overloaded * counts
+        fails = summary.failed.sum(axis=1)
         is_first = (self.not_held[rows] == 0) & (fails > 0)
         self.not_held_places[rows] = np.where(is_first[:, None], lost, self.not_held_places[rows])
         self.not_held[rows] += fails

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from designer.arrays import IntArray, require_shape
-from designer.kernel.calling import CableFigures, Meets, plain, share_out
+from designer.kernel.calling import CableFigures, LoadSummary, plain, share_out
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.progress import checkpoint
@@ -18,12 +18,12 @@ _SHARE = 64
 """Sizes that one thread takes at a time; the first of them starts without a neighbour."""
 
 
-def is_quick(robot: Robot) -> bool:
-    """Tell whether `meet` solves this robot in one compiled pass."""
+def has_fast_solver(robot: Robot) -> bool:
+    """Tell whether `evaluate_sizes` solves this robot in one compiled pass."""
     return robot.is_square and robot.pulley_radius_m == 0.0
 
 
-def meet(
+def evaluate_sizes(
     robot: Robot,
     poses: Poses,
     cables: Sequence[Cable],
@@ -31,7 +31,7 @@ def meet(
     n_cells: int,
     *,
     leaves_out_hanging: bool,
-) -> Meets:
+) -> LoadSummary:
     """Solve poses (n_poses,) with each of the cables on all winches, by `designer.kernel.sizes`.
 
     The quick pass gives up on a pose early; what it marks as failed may still be found by
@@ -56,7 +56,7 @@ def meet(
 
     checkpoint()
     counts = np.zeros((3, len(cables)), dtype=np.int64)
-    meets = Meets(
+    meets = LoadSummary(
         utilisation=np.full((len(cables), n_cells), -np.inf),
         pose=np.zeros((len(cables), n_cells), dtype=np.int64),
         longest_m=np.zeros((len(cables), robot.n_cables)),
@@ -65,7 +65,7 @@ def meet(
         left_out=counts[2],
         failed=np.zeros((len(cables), len(poses.position_m)), dtype=np.bool_),
     )
-    if not is_quick(robot):
+    if not has_fast_solver(robot):
         pairs = np.indices(meets.failed.shape).reshape(2, -1)
         of_one_pose = len(poses.position_m) == 1
         for rows, at in [pairs] if of_one_pose else np.split(pairs, len(cables), axis=1):
@@ -95,7 +95,7 @@ def meet(
 
 
 def add_slowly(
-    meets: Meets,
+    meets: LoadSummary,
     robot: Robot,
     poses: Poses,
     cables: Sequence[Cable],
@@ -109,7 +109,7 @@ def add_slowly(
     Parameters
     ----------
     meets
-        What is added to; the other parameters as for `meet`.
+        What is added to; the other parameters as for `evaluate_sizes`.
     rows, at : array (n_pairs,)
         Which of the cables, and of the poses.
     """

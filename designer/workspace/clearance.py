@@ -29,12 +29,11 @@ from designer.physics import catenary
 from designer.statics.geometry import upright_poses
 from designer.statics.inverse import Statics, solve_sagging
 from designer.workspace.demand import is_counted, is_left_out
+from designer.workspace.effort import CLEARANCE
 from designer.workspace.refine import LIGHT, ONE_CLIMB, places_of, refine
 
 PLATFORM = -1
 """Stands for the platform where a pair is a cable and the platform."""
-MOST_SAMPLES = 1000
-"""Poses of a workspace that are looked at before the search between them."""
 _FLAT = 1e-9
 """Relative: below it a hull has no extent in a direction."""
 _ROUGH, _COARSE, _FINE = 8, 24, 12
@@ -495,8 +494,8 @@ def where_pairs_are_near(
 def survey(
     robot: Robot, workspace: Workspace, cable: Cable | Cables, clearance_m: float
 ) -> Interference:
-    """Look for the smallest clearances in a workspace: `MOST_SAMPLES` first, then between them."""
-    thinned = workspace.thinned(MOST_SAMPLES)
+    """Look for the smallest clearances in a workspace: `CLEARANCE` first, then between them."""
+    thinned = workspace.thinned(CLEARANCE)
     statics = solve_sagging(robot, Poses.at(thinned), cable)
 
     def counted(among: Callable[[Statics], Clearance], statics: Statics) -> Clearance:

@@ -16,10 +16,8 @@ from designer.statics.inverse import solve_sagging
 from designer.statics.modes import NEAR, frequencies_Hz, knows_inertia
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.workspace.demand import is_counted
+from designer.workspace.effort import CANDIDATE_STIFFNESS, STIFFNESS
 from designer.workspace.refine import LIGHT, ONE_CLIMB, refine
-
-MOST_SAMPLES, FEW_SAMPLES = 2000, 500
-"""Poses that are looked at before the search between them, for a design and for each candidate."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,10 +49,10 @@ def survey_stiffness(
 ) -> StiffnessSurvey | None:
     """Return the softest and the stiffest pose; None if no pose is held stably.
 
-    The search starts from `MOST_SAMPLES` of the workspace's samples.
+    The search starts from `STIFFNESS` of the workspace's samples.
     """
     displacement = partial(displacement_demand, robot, workspace, cable)
-    thinned = workspace.thinned(MOST_SAMPLES)
+    thinned = workspace.thinned(STIFFNESS)
     demand = displacement(thinned)
     if not np.isfinite(demand).any():
         return None
@@ -88,10 +86,10 @@ def smallest_stiffness_N_per_m(
 
     The smallest force over displacement in any direction, the platform free to turn, at fixed
     unstrained lengths, with sag; zero where the equilibrium is not stable, NaN where no pose
-    counts. Searched between the samples as well, or taken from `FEW_SAMPLES` of them. See
+    counts. Searched between the samples as well, or taken from `CANDIDATE_STIFFNESS` of them. See
     `designer.statics.stiffness`.
     """
-    thinned = workspace.thinned(FEW_SAMPLES)
+    thinned = workspace.thinned(CANDIDATE_STIFFNESS)
     displacement = partial(displacement_demand, robot, workspace, cable)
     if searched:
         (worst,) = refine(workspace.space, displacement, thinned, LIGHT)

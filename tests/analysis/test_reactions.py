@@ -32,8 +32,7 @@ from designer.report.design.drawings import Drawings
 from designer.report.design.report import section
 from designer.report.render import rendered
 from designer.resources import example_file
-from designer.selection.criteria import criteria_of
-from designer.selection.requirements import CaseLoads, evaluate
+from designer.selection.criteria import CaseLoads, criteria_of, evaluate
 from designer.statics.inverse import platform_branch_N, solve_sagging
 from designer.workspace.demand import settled
 

@@ -17,11 +17,11 @@ from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.fit import fit
 from designer.diagnosis.problem import Problem
+from designer.diagnosis.report import write_diagnosis
+from designer.diagnosis.study import diagnosed_config
 from designer.io.config import read_study
-from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
 from designer.model.measurements import Noise
-from designer.report.diagnosis.report import write_diagnosis
 
 
 def case(folder, robot, unknown, *, rows=32, seed=5, more=None):

@@ -14,9 +14,9 @@ from twins.robots import HALL6, HALL8, YARD3
 from designer.diagnosis.case import case_of
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose
+from designer.diagnosis.study import diagnosed_config
 from designer.io.config import read_study
 from designer.io.config.moved import SCHEMA_FILE, with_modeline
-from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
 
 

@@ -22,10 +22,10 @@ from designer.diagnosis.design import with_design
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.result import Diagnosis
 from designer.diagnosis.statistics import heldout_rows
+from designer.diagnosis.study import diagnosed_config
 from designer.errors import InputError
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
-from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
 from designer.model.robot import Poses
 from designer.statics.inverse import solve_sagging

@@ -12,9 +12,9 @@ from twins.dataset import make
 from twins.robots import YARD3
 from twins.troubles import troubled
 
-from designer.cli.tables import _estimated
 from designer.diagnosis.calibration import calibration_of
 from designer.diagnosis.case import case_of
+from designer.diagnosis.command import _estimated
 from designer.diagnosis.fit import fit, jacobian, step_time
 from designer.diagnosis.problem import Predictor, Problem, SlopeCache, readings_of
 from designer.diagnosis.result import Estimate

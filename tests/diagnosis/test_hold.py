@@ -16,13 +16,13 @@ from designer.arrays import frozen_array
 from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.hold import Gain, _no_step, _weights
+from designer.diagnosis.report import verdict
 from designer.diagnosis.result import Diagnosis, DiagnosisVerdict, Reason
 from designer.diagnosis.statistics import heldout_rows, orthonormal
 from designer.diagnosis.structure import Carrier, Structure, covariates_of
 from designer.effects.effect import Readings
 from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.report.diagnosis.report import verdict
 
 
 def test_a_basis_spans_all_columns_whatever_their_sizes() -> None:

@@ -15,7 +15,7 @@ from report_parts import diagnosis_page
 from twins.dataset import make
 from twins.robots import FAST3, YARD3
 
-from designer.cli.tables import print_diagnosis
+from designer.diagnosis.command import _print_diagnosis
 from designer.diagnosis.diagnose import _with_one_force
 from designer.diagnosis.hold import Reason, RejectedEffect, _unsteady
 from designer.diagnosis.result import Diagnosis, DiagnosisVerdict, Finding
@@ -33,7 +33,7 @@ def told(found: Diagnosis) -> dict[str, tuple[str, ...]]:
 
 
 def first_line(found: Diagnosis, capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
-    print_diagnosis(found, Path("folder"), ["diagnosis.json"])
+    _print_diagnosis(found, Path("folder"), ["diagnosis.json"])
     text = capsys.readouterr().out
     return text.splitlines()[0], text
 

@@ -12,11 +12,11 @@ from twins.dataset import DataSet, make
 from twins.robots import YARD3
 
 from designer.diagnosis.diagnose import diagnose_study
+from designer.diagnosis.report import verdict
 from designer.diagnosis.result import Diagnosis
+from designer.diagnosis.study import diagnosed_config
 from designer.io.config import read_study
-from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
-from designer.report.diagnosis.report import verdict
 
 OWN = ["pose_frame", "length_offset"]
 RADIUS_M = 0.12

@@ -16,9 +16,9 @@ from designer.diagnosis.case import case_of
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.result import Diagnosis
+from designer.diagnosis.study import diagnosed_config
 from designer.errors import InputError
 from designer.io.config import read_study
-from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
 
 SPAN110 = replace(

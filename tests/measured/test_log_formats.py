@@ -20,8 +20,8 @@ from pyarrow import parquet
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
+from designer.documents import table
 from designer.errors import Fault, InputError
-from designer.measured import table
 from designer.model.measurements import Measured
 
 

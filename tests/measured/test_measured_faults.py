@@ -7,9 +7,9 @@ import random
 import pytest
 from measured_log import COLUMNS_LINE, Log
 
+from designer.documents import table
 from designer.errors import Fault, InputError
 from designer.io.config import read_study
-from designer.measured import table
 from designer.measured.read import read_measured
 
 

@@ -14,16 +14,15 @@ from twins.dataset import make
 from twins.robots import YARD3
 
 from designer import effects
-from designer.cli.commands import main
-from designer.cli.schema import schema
+from designer.cli.commands import main, schema
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose_study
+from designer.diagnosis.study import diagnosed_config
 from designer.effects.effect import Effect, Readings
 from designer.effects.load import find_flaw, load_effects
 from designer.effects.registry import EFFECTS, SHIPPED, KnownEffects
 from designer.errors import EffectError, InputError
 from designer.io.config import read_study
-from designer.io.results import diagnosed_config
 from designer.measured.read import read_measured
 from designer.plugins import find_plugins
 from designer.study import Study, as_built_by, declared_settings

@@ -115,3 +115,14 @@ def test_each_ring_registers_the_commands_that_it_names() -> None:
     assert not {info.name for info in app.registered_commands} & {
         command for ring in RINGS for command in ring.commands
     }
+
+
+def test_the_window_needs_no_other_ring() -> None:
+    rooms = {room for ring in RINGS if ring.name != "window" for room in ring.rooms}
+    code = (
+        "import sys, designer.explore.worker, designer.explore.export\n"
+        f"print(sorted({rooms} & {{name.split('.')[1] for name in sys.modules if "
+        "name.startswith('designer.')}))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

@@ -18,6 +18,7 @@ from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.plan import Proposal
 from designer.diagnosis.problem import Predictor
+from designer.diagnosis.report import diagnosis_report, write_diagnosis
 from designer.diagnosis.result import (
     MOST_SCATTER,
     Diagnosis,
@@ -32,7 +33,6 @@ from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED
 from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.report.diagnosis.report import diagnosis_report, write_diagnosis
 from designer.report.document import Report
 from designer.report.render import render_html
 

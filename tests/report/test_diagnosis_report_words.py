@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from designer.diagnosis import words
+from designer.diagnosis.figures import MOST_POINTS, running_median, thinned, window
 from designer.diagnosis.result import Estimate
 from designer.diagnosis.structure import strongest_channel, whereabouts
 from designer.effects.effect import Effect, Parameter, Size
-from designer.report.diagnosis import words
-from designer.report.figures.diagnosis import MOST_POINTS, running_median, thinned, window
 from designer.spelling import in_runs
 from designer.units import NUMBER, TIME
 

@@ -16,9 +16,8 @@ from designer.model.robot import Poses
 from designer.model.verdict import Requirement
 from designer.report.design.drawings import Drawings
 from designer.report.design.report import section as section_of
-from designer.selection.criteria import criteria_of
+from designer.selection.criteria import criteria_of, evaluate, loads_of
 from designer.selection.reeving import drum_of
-from designer.selection.requirements import evaluate, loads_of
 from designer.statics.inverse import solve_sagging
 from designer.statics.modes import (
     cable_frequencies_Hz,

@@ -1,40 +1,57 @@
-"""Load cases on ropes that can be bought: who holds, what governs, agreement with twins."""
+"""Load cases on ropes that can be bought: who holds, what governs, agreement with twins.
+
+Ropes whose stiffness depends on their tension: it is that at the tension met in each case.
+
+Sets of wrenches: nothing in a box asks for more than is stated of it.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from grade_samples import family_grade
 from redundant_robots import FOUR
+from scipy.optimize import brentq, linprog
 from scipy.spatial.transform import Rotation
 from twins.loaded import Twin, acting, held, least_largest, rest, tensions_N
 
+import designer
 from designer.arrays import FloatArray
 from designer.effects.design import AsBuilt
+from designer.grades.grade import Grade, RelativeStiffness
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
-from designer.model.cable import Cable
-from designer.model.load_case import Ice, LoadCase, Loaded, Wind
+from designer.model.cable import Cable, Stiffening
+from designer.model.load_case import Ice, LoadCase, Loaded, Wind, WrenchSet
 from designer.model.region import PointList, Prism, Region
-from designer.model.robot import Poses
+from designer.model.robot import Platform, Poses, Robot
 from designer.model.workspace import Workspace
+from designer.progress import Advance
 from designer.resources import example_file
+from designer.selection.candidate import candidates_of, undominated
 from designer.selection.cases import (
     CaseResult,
     Cases,
+    converge_stiffness,
     envelope,
     governing,
     refine_all,
     resettled,
     worst_load_direction,
 )
+from designer.selection.groups import MOST_PROPOSALS, choose_groups_of
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.selection.verify import verify
 from designer.statics.cable_loss import Fate, settle
-from designer.statics.inverse import solve_sagging
-from designer.study import Study
+from designer.statics.inverse import solve_massless, solve_sagging
+from designer.study import CableGroup, Selection, Study
 
 PARKED = {
     "yard": Prism.box((13, 17), (7, 11), (1, 2)),
@@ -333,3 +350,306 @@ def test_wind_is_searched_to_its_worst_direction() -> None:
     assert most.utilisation > governing(found).utilisation * (1.0 + 1e-5)
     assert most.utilisation * cable.allowable_tension_N >= max(used) * (1.0 - 1e-9)
     assert most.utilisation * cable.allowable_tension_N <= max(used) * 1.002
+
+
+ROBOT = Robot(
+    np.array([[0, 0, 11.5], [30, 1, 12.5], [14, 26, 11.0]]), Platform(180.0, drag_area_m2=0.6)
+)
+PLACES = np.random.default_rng(3).uniform([8, 5, 1], [19, 13, 8], (25, 3))
+POINTS = Workspace(PointList(PLACES))
+CASES = (
+    LoadCase("rest"),
+    LoadCase("strict", safety_factor=6.0),
+    LoadCase("heavy", mass_kg=240.0),
+    LoadCase("storm", wind=Wind(12.0, 1.2, count=3)),
+    LoadCase("cold", temperature_change_K=-50.0),
+    LoadCase("lost", cable_lost=2, safety_factor=2.0),
+)
+LAW = RelativeStiffness((4.0, 30.0, 40.0), (0.02, 0.3, 0.6), "printed", "made up for a test", 0.1)
+
+
+def fibre(law: RelativeStiffness = LAW, diameters_mm: tuple[float, ...] = (6.0, 8.0)) -> Grade:
+    grade = family_grade(700.0, breaking_stress_Pa=9e8, diameters_mm=diameters_mm)
+    return replace(grade, modulus=None, stiffness=law, material="HMPE")
+
+
+def chosen_in(
+    workspace: Workspace,
+    cases: tuple[LoadCase, ...],
+    safety_factor: float = 3.0,
+    proof_s: float = 0.0,
+) -> SelectionResult:
+    selection = Selection(safety_factor=safety_factor, objectives=("mass",))
+    built = AsBuilt(ROBOT)
+    return select(
+        ROBOT, workspace, selection, [fibre()], built=built, load_cases=cases, proof_s=proof_s
+    )
+
+
+def largest_N(case: LoadCase, cable: Cable, words: str) -> float:
+    """Return the largest tension at all points in one direction, by the solvers alone."""
+    (one,) = (loaded for loaded in case.on(ROBOT, cable) if loaded.words == words)
+    places = Poses.at(PLACES)
+    if one.keeps_lengths:
+        found = settle(one.robot, places, one.cable, one.lost_cable, one.growth)
+        return float(found.largest_tension_N.max())
+    return float(solve_sagging(one.robot, places, one.cable).largest_tension_N.max())
+
+
+@pytest.mark.slow
+def test_each_case_has_the_stiffness_at_its_own_tension() -> None:
+    chosen = chosen_in(POINTS, CASES).chosen
+    assert chosen is not None
+    breaking_N = chosen.size.minimum_breaking_load_N
+    for found in chosen.cases:
+        bare = found.loaded.bare[1]
+
+        def off(stiffness_N: float, case=found.case, words=found.loaded.words, bare=bare) -> float:
+            cable = replace(bare, axial_stiffness_N=stiffness_N)
+            fraction = largest_N(case, cable, words) / breaking_N
+            return float(np.interp(fraction, LAW.load_fraction, LAW.ea_over_breaking_load)) - (
+                stiffness_N / breaking_N
+            )
+
+        expected_N = brentq(off, 4.0 * breaking_N, 40.0 * breaking_N, rtol=1e-9)
+        assert found.loaded.cable.axial_stiffness_N == pytest.approx(expected_N, rel=3e-6)
+    stiffness = {one.case.name: one.loaded.cable.axial_stiffness_N for one in chosen.cases}
+    assert stiffness["strict"] == stiffness["rest"]
+    assert stiffness["heavy"] > 1.05 * stiffness["rest"]
+    assert chosen.cable.axial_stiffness_N == chosen.governing.loaded.cable.axial_stiffness_N
+
+
+def test_the_safety_factor_is_not_in_it() -> None:
+    few, many = (chosen_in(POINTS, (), factor).candidates for factor in (1.5, 4.0))
+    for one, other in zip(few, many, strict=True):
+        stiffness_N = pytest.approx(other.cable.axial_stiffness_N, rel=1e-12)
+        assert one.cable.axial_stiffness_N == stiffness_N
+        assert one.cable.allowable_tension_N > other.cable.allowable_tension_N
+
+
+@pytest.mark.slow
+def test_the_tension_is_that_between_the_samples() -> None:
+    workspace = Workspace(Prism.box((8, 19), (5, 13), (1, 8)), samples=20)
+    found = chosen_in(workspace, CASES[:3], proof_s=2.0)
+    assert found.chosen is not None
+    for one in found.chosen.cases:
+        cable = one.loaded.cable
+        assert cable.stiffening is not None
+        met_N = one.verification.max_tension_N
+        assert cable.axial_stiffness_N == pytest.approx(cable.stiffening.at(met_N), rel=1e-6)
+    governing = found.chosen.governing
+    statics = solve_sagging(governing.loaded.robot, governing.pose, governing.loaded.cable)
+    assert float(statics.largest_tension_N[0]) == pytest.approx(
+        governing.verification.max_tension_N, rel=1e-9
+    )
+    assert found.proof is not None
+    assert found.proof.found == pytest.approx(governing.utilisation, rel=1e-9)
+
+
+@pytest.mark.parametrize("exponent", [0.3, 0.9, -0.9])
+def test_a_stiffness_that_moves_its_own_tension_is_found(exponent: float) -> None:
+    """Where the tension grows with the stiffness, plain turns would come near it too slowly."""
+    rising = np.geomspace(0.01, 1.0, 40)
+    law = Stiffening(tuple(1e4 * rising), tuple(2e5 * rising**exponent))
+    start = Cable(0.01, 0.1, 1e4, 1e4, stiffening=law)
+
+    def max_tension_N(cable: Cable) -> float:
+        return 1e3 * (cable.axial_stiffness_N / 1e5)
+
+    found = converge_stiffness(start, max_tension_N)
+    at_N = law.at(max_tension_N(found))
+    assert found.axial_stiffness_N == pytest.approx(at_N, rel=2e-6)
+
+
+def test_one_stiffness_for_all_tensions_is_left_alone() -> None:
+    grade = family_grade()
+    cable = grade.cable(grade.sizes[0], 5.0)
+    assert cable.stiffening is None
+    assert cable.at_tension(1e3) is cable
+    one_figure = fibre(replace(LAW, ea_over_breaking_load=(56.0,), load_fraction=(0.2,)))
+    assert one_figure.cable(one_figure.sizes[0], 5.0).stiffening is None
+
+
+def test_an_effect_changes_all_of_the_stiffness() -> None:
+    grade = fibre()
+    cable = grade.cable(grade.sizes[0], 5.0)
+    built = AsBuilt(ROBOT, lambda one: replace(one, axial_stiffness_N=0.5 * one.axial_stiffness_N))
+    changed = built.cable(cable)
+    for tension_N in (100.0, 3e3, 2e4):
+        there = changed.at_tension(tension_N).axial_stiffness_N
+        assert there == pytest.approx(0.5 * cable.at_tension(tension_N).axial_stiffness_N)
+
+
+def test_groups_have_the_stiffness_at_their_largest_tension() -> None:
+    groups = (CableGroup("a", (1,)), CableGroup("b", (2, 3)))
+    selection = Selection(safety_factor=5.0, groups=groups)
+    choice = choose_groups_of(
+        POINTS, selection, [fibre(diameters_mm=(4.0, 5.0, 6.0))], AsBuilt(ROBOT), None
+    )
+    assert choice.chosen.is_found
+    tension_N = choice.chosen.max_tension_N
+    assert math.isfinite(tension_N)
+    for product in choice.chosen.ropes:
+        expected = product.cable.at_tension(tension_N).axial_stiffness_N
+        assert product.cable.axial_stiffness_N == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_bar_advances_by_one_with_each_proposal_for_groups() -> None:
+    steps: list[int] = []
+
+    class Counter:
+        @contextmanager
+        def task(self, name: str, total: int) -> Iterator[Advance]:
+            assert total == MOST_PROPOSALS
+            yield steps.append
+
+    selection = Selection(
+        safety_factor=5.0, groups=(CableGroup("a", (1,)), CableGroup("b", (2, 3)))
+    )
+    steel = family_grade(700.0, diameters_mm=(3.0, 4.0, 5.0, 6.0))  # chosen in a single round
+    choice = choose_groups_of(POINTS, selection, [steel], AsBuilt(ROBOT), None, Counter())
+    assert sum(steps) == len(choice.proposals) > 0
+
+
+def test_no_rope_is_beaten_by_one_that_may_be_the_stiffer() -> None:
+    """A weaker rope that is softer where both may be: it is what is met that tells."""
+    (strong,) = candidates_of(Selection(), [fibre(diameters_mm=(6.0,))], AsBuilt(ROBOT))
+    breaking_N = 0.9 * strong.cable.allowable_tension_N
+    weak = replace(strong, cable=replace(strong.cable, allowable_tension_N=breaking_N))
+    assert undominated([strong, weak]) == (strong,)
+    assert undominated([strong, weak], at_any_tension=True) == (strong, weak)
+    assert weak.cable.stiffening is not None
+    stiffest_N = max(weak.cable.stiffening.axial_stiffness_N)
+    steel = replace(weak.cable, axial_stiffness_N=stiffest_N, stiffening=None)
+    stiff = replace(weak, cable=steel)
+    assert undominated([strong, stiff], at_any_tension=True) == (strong,)
+
+
+G = 9.81
+CABLE = Cable(0.006, 0.1, 2e6, 5e3)
+CRANE = """
+name: Crane
+robot:
+  anchors: [[0, 0, 12], [14, 0, 12], [6, 11, 12]]
+  platform: {mass: 60 kg}
+cable: {grade: unirope-6x36-iwrc-1960}
+workspace:
+  region: {box: [[4, 8], [3, 5], [2, 8]]}
+  samples: 200
+  proof: 0 s
+selection: {grades: [unirope-6x36-iwrc-1960], safety_factor: 5}
+load_cases:
+  - name: pulled
+    dynamic_factor: 1.2
+    wrench_set: {force: [[-60, 90], [-80, 40], [-900, 250]]}
+  - name: tool
+    wrench_set: [{force: [50, 0, -400]}, {force: [-80, 20, 0]}]
+"""
+
+
+def straight_tension_N(exits_m: np.ndarray, place_m: np.ndarray, load_N: np.ndarray) -> float:
+    """Return the least largest tension of straight cables; infinite where none holds the load."""
+    along = (exits_m - place_m).T
+    along = along / np.linalg.norm(along, axis=0)
+    n = len(exits_m)
+    held = np.column_stack([along, np.zeros(3)])
+    below = np.column_stack([np.eye(n), -np.ones(n)])
+    answer = linprog(
+        np.eye(n + 1)[n], below, np.zeros(n), held, -load_N, bounds=[(0.0, None)] * (n + 1)
+    )
+    return float(answer.fun) if answer.status == 0 else np.inf
+
+
+@pytest.mark.cases_by_default(1)
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("n_cables", [3, 4])
+def test_corners_bound_straight_cables(n_cables: int, seed: int) -> None:
+    rng = np.random.default_rng([734, n_cables, seed])
+    turn = 2.0 * np.pi * (np.arange(n_cables) + rng.uniform(-0.2, 0.2, n_cables)) / n_cables
+    exits_m = np.column_stack(
+        [8.0 * np.cos(turn), 8.0 * np.sin(turn), rng.uniform(8, 10, n_cables)]
+    )
+    robot, place = Robot(exits_m, Platform(80.0)), rng.uniform([-1, -1, 2], [1, 1, 5])
+    ends = rng.uniform([-80, -80, -500], [80, 80, 200], (2, 3))
+    bounds = [np.append(end, np.zeros(3)) for end in ends]
+    case = LoadCase("box", dynamic_factor=1.3, wrench_set=WrenchSet.between(*bounds))
+    loads = list(case.on(robot, CABLE))
+    assert len(loads) == case.direction_count(robot) == 8
+    corners = [float(solve_massless(one.robot, Poses.at(place)).largest_tension_N) for one in loads]
+    shares = rng.uniform(size=(300, 3))
+    weight = np.array([0.0, 0.0, -80.0 * G])
+    forces = ends[0] + shares * (ends[1] - ends[0])
+    inside = [straight_tension_N(exits_m, place, 1.3 * (weight + force)) for force in forces]
+    assert max(inside) <= max(corners) * (1.0 + 1e-9)
+    at_corners = [
+        straight_tension_N(exits_m, place, 1.3 * weight + one.robot.platform.wrench_N[:3])
+        for one in loads
+    ]
+    np.testing.assert_allclose(corners, at_corners, rtol=1e-7)
+
+
+@pytest.fixture(scope="module")
+def analysis(tmp_path_factory: pytest.TempPathFactory) -> designer.Analysis:
+    path = Path(tmp_path_factory.mktemp("crane")) / "crane.yaml"
+    path.write_text(CRANE, encoding="utf-8")
+    return designer.analyse(designer.read_study(path))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(3))
+def test_no_wrench_of_a_box_asks_sagging_cables_for_more(
+    analysis: designer.Analysis, seed: int
+) -> None:
+    rng = np.random.default_rng([91, seed])
+    assert analysis.chosen is not None
+    pulled, tool = analysis.chosen.cases
+    places = rng.uniform([4, 3, 2], [8, 5, 8], (150, 3))
+    for found, low, high in (
+        (pulled, [-60, -80, -900], [90, 40, 250]),
+        (tool, [50, 0, -400], [50, 0, -400]),
+        (tool, [-80, 20, 0], [-80, 20, 0]),
+    ):
+        for _ in range(20):
+            wrench_N = np.append(rng.uniform(low, high), np.zeros(3))
+            robot, cable = found.loaded.bare
+            other = found.case.under(robot, cable, wrench_N=wrench_N)
+            statics = solve_sagging(other.robot, Poses.at(places), other.cable)
+            assert statics.is_solved.all()
+            most_N = found.verification.max_tension_N * (1.0 + 1e-6)
+            assert statics.cable_tension_N.max() <= most_N
+    assert pulled.utilisation > tool.utilisation
+
+
+@pytest.mark.slow
+def test_worst_wrench_is_in_words_and_files(analysis: designer.Analysis) -> None:
+    pulled, tool = analysis.to_dict()["load_cases"]
+    assert pulled["wrench_N"][2] == -900.0
+    assert tool["wrench_N"][:3] in ([50.0, 0.0, -400.0], [-80.0, 20.0, 0.0])
+    directions = [check["direction"] for check in analysis.to_dict()["checks"]]
+    assert any("-900) N" in (direction or "") for direction in directions)
+
+
+def test_the_inside_of_a_box_is_searched() -> None:
+    robot = Robot(np.array([[0, 0, 9.0], [9, 0, 9], [4, 8, 9]]), Platform(50.0))
+    ends = np.array([[-40.0, 0, -90, 0, 0, 0], [60.0, 0, 10, 0, 0, 0]])
+    case = LoadCase("box", wrench_set=WrenchSet.between(*ends))
+    peak = np.array([23.0, 0, -31, 0, 0, 0])
+
+    def severity_of(loaded: Loaded) -> float:
+        assert loaded.wrench_N is not None
+        return -float(np.linalg.norm(loaded.wrench_N - peak))
+
+    first = next(iter(case.on(robot, CABLE)))
+    found, _ = worst_load_direction(first, severity_of(first), severity_of)
+    assert found.wrench_N is not None
+    np.testing.assert_allclose(found.wrench_N, peak, atol=1e-3)
+
+
+def test_a_list_has_nothing_between() -> None:
+    robot = Robot(np.array([[0, 0, 9.0], [9, 0, 9], [4, 8, 9]]), Platform(50.0))
+    listed = LoadCase("list", wrench_set=WrenchSet(np.eye(6)[:3]))
+    assert not any(one.is_direction_searched for one in listed.on(robot, CABLE))
+    with pytest.raises(ValueError, match="1 to 64 wrenches"):
+        WrenchSet(np.zeros((65, 6)))
+    with pytest.raises(ValueError, match="exclude each other"):
+        LoadCase("both", wrench_N=np.zeros(6), wrench_set=WrenchSet(np.eye(6)))

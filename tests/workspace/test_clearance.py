@@ -21,8 +21,7 @@ from designer.model.space import Orientations
 from designer.model.verdict import State
 from designer.model.workspace import Workspace
 from designer.physics import catenary
-from designer.selection.criteria import criteria_of
-from designer.selection.requirements import CaseLoads, evaluate
+from designer.selection.criteria import CaseLoads, criteria_of, evaluate
 from designer.statics.fixed_length import cables_of_length
 from designer.statics.inverse import Statics, solve_sagging
 from designer.workspace.clearance import (

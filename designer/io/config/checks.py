@@ -20,6 +20,7 @@ from scipy.spatial import QhullError
 
 from designer.arrays import FloatArray
 from designer.documents.bounds import BOUNDS, MAX_CABLES
+from designer.documents.columns import COVARIATE, IGNORE, TIME_NAME, cable_of, is_rotation
 from designer.documents.document import Data, Document, Key
 from designer.documents.fields import kind_at, reader_of
 from designer.documents.opened import open_input, reason
@@ -29,7 +30,6 @@ from designer.errors import Fault
 from designer.io.config.effects import DeclaredEffects, read_effects
 from designer.io.config.machine import attached_each
 from designer.io.config.schema import ORIENTATION_KINDS, ColumnSection, StudySection
-from designer.measured.assign import COVARIATE, IGNORE, TIME_NAME, cable_of, is_rotation
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.model.measurements import POSES
 from designer.model.region import Prism, Rectangle

@@ -24,6 +24,7 @@ from pydantic import (
 from designer.arrays import FloatArray, frozen_array
 from designer.documents import fields
 from designer.documents.bounds import MAX_CABLES, MOST_SAMPLES
+from designer.documents.columns import COVARIATE, IGNORE, column_hint, dimension_of
 from designer.documents.fields import (
     Section,
     Text,
@@ -51,7 +52,6 @@ from designer.io.config.machine import (
     only_one_of,
     rotation_vector_rad,
 )
-from designer.measured.assign import COVARIATE, IGNORE, column_hint, dimension_of
 from designer.model.cable import MaterialName, Preference, PriceList, Trust
 from designer.model.measurements import LogColumn, LogSession, Measurements, Reading
 from designer.model.motion import Ends

@@ -9,12 +9,13 @@ from types import FunctionType
 from markupsafe import Markup
 
 from designer.analysis.analyse import Analysis
-from designer.plugins import attempt, command_name, find_plugins, registered
+from designer.plugins import Plugins, attempt, command_name, find_plugins, registered
 from designer.report.design import sections
 from designer.report.design.drawings import Drawings
 from designer.report.design.first_page import first_page
 from designer.report.design.sections import Context, shared
 from designer.report.document import Report, Section, control_of
+from designer.report.templates import filters_of
 
 SECTIONS: tuple[tuple[str, Callable[[Analysis], Context | None]], ...] = (
     ("answer", first_page),
@@ -77,9 +78,11 @@ def report_from(drawings: Drawings, section_ids: Sequence[str] = tuple(dict(SECT
     """Return the report from its figures, and from what they show."""
     analysis = drawings.analysis
     shown = [section(drawings, section_id) for section_id in section_ids]
-    problems: list[str] = []
+    plugins = find_plugins(analysis.catalogue.with_plugins)
+    filters, problems = filters_of(plugins)
     if "left-out" in section_ids:  # the first section that is about the report itself
-        extra, problems = plugin_sections(analysis)
+        extra, more = plugin_sections(analysis, plugins)
+        problems += more
         last = [*section_ids].index("left-out")
         shown[last:last] = extra
     return Report.of(
@@ -92,12 +95,12 @@ def report_from(drawings: Drawings, section_ids: Sequence[str] = tuple(dict(SECT
         missing=drawings.missing,
         control=control_of(analysis.study, analysis.catalogue),
         problems=problems,
+        filters=filters,
     )
 
 
-def plugin_sections(analysis: Analysis) -> tuple[list[Section], list[str]]:
+def plugin_sections(analysis: Analysis, plugins: Plugins) -> tuple[list[Section], list[str]]:
     """Return the sections of plugins, and a line for each that is left out."""
-    plugins = find_plugins(analysis.catalogue.with_plugins)
     functions, problems = registered(
         plugins, "register_report_sections", FunctionType, command_name, dict(SECTIONS)
     )

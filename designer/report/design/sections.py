@@ -31,12 +31,12 @@ from designer.report.document import MOST_ROWS
 from designer.report.figures.charts_selection import rank
 from designer.report.templates import Statement, plain_statement
 from designer.selection.candidate import MEANINGS, Candidate
-from designer.selection.cases import FEW_SAMPLES
 from designer.selection.reeving import Allowance
 from designer.selection.result import GradeOutcome, SelectionResult
 from designer.sizing.loop import Iterate, LoopSizing
 from designer.statics.cable_loss import Fate
 from designer.study import Entry, Study, rope_effects
+from designer.workspace.effort import COARSE
 
 if TYPE_CHECKING:
     from designer.report.design.drawings import Drawings
@@ -226,7 +226,7 @@ def load_cases(analysis: Analysis) -> Context | None:
         "chosen": chosen,
         "leaves_out": study.workspace is not None and study.workspace.hangs_below == "exclude",
         "losses": [] if chosen is None else [*_losses(chosen)],
-        "few_samples": FEW_SAMPLES,
+        "few_samples": COARSE.settling,
         "temperature_change_K": _largest_change_K(study),
         "expansion": None if chosen is None else _expansion(study, chosen),
     }

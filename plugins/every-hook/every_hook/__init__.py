@@ -106,3 +106,14 @@ def anchor_heights(analysis: Analysis) -> tuple[str, str]:
 def register_report_sections() -> list[Callable[[Analysis], tuple[str, str] | None]]:
     """Return the functions that give the design report a section each."""
     return [anchor_heights]
+
+
+def in_feet(length_m: float) -> str:
+    """Return a length in feet, for ``{{ length_m | in_feet }}`` in templates of pages."""
+    return f"{length_m / 0.3048:.1f} ft"
+
+
+@hookimpl
+def register_template_filters() -> list[Callable[..., object]]:
+    """Return the functions that become filters of templates."""
+    return [in_feet]

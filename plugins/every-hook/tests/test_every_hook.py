@@ -80,6 +80,18 @@ def test_a_section_of_the_report(designer) -> None:
     assert "<li>9.00 m</li><li>9.00 m</li><li>8.50 m</li>" in page
 
 
+def test_a_filter_of_templates(designer) -> None:
+    Path("acme").mkdir()
+    footer = "{% block footer %}<footer>{{ 3.048 | in_feet }}</footer>{% endblock %}"
+    page = '{% extends "default/page.html.j2" %}' + footer
+    Path("acme/page.html.j2").write_text(page, encoding="utf-8")
+    arguments = ("report", "hall.yaml", "--quick", "--template", "acme", "-o", "report")
+    assert designer(*arguments)[0] == 0
+    assert "<footer>10.0 ft</footer>" in Path("report/report.html").read_text(encoding="utf-8")
+    status, _, notes = designer(*arguments, "--no-plugins")
+    assert (status, "acme/page.html.j2:1: No filter named 'in_feet'" in notes) == (2, True)
+
+
 def test_it_shows_every_hook_but_grades_and_effects() -> None:
     shown = {name for name in HOOKS if hasattr(every_hook, name)}
     assert {*HOOKS} - shown == {"register_grades", "register_effects"}

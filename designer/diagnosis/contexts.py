@@ -14,15 +14,15 @@ from itertools import groupby
 import numpy as np
 
 from designer.diagnosis.accuracy import Interval
+from designer.diagnosis.figures import Layout, carriers_chart, errors_chart, rows_chart
 from designer.diagnosis.free_poses import ABSORBED
 from designer.diagnosis.result import MOST_SCATTER, Diagnosis, Finding
 from designer.diagnosis.search import EffectTrial
 from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.diagnosis.structure import Carrier
+from designer.diagnosis.words import grouped, quantities
 from designer.report import format as fmt
-from designer.report.diagnosis.words import grouped, quantities
 from designer.report.document import MOST_ROWS, Drawing, vector
-from designer.report.figures.diagnosis import Layout, carriers_chart, errors_chart, rows_chart
 
 Context = Mapping[str, object]
 

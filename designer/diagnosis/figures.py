@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.diagnosis import words
 from designer.diagnosis.problem import channel_names
 from designer.diagnosis.result import Diagnosis
 from designer.diagnosis.structure import strongest_channel
+from designer.diagnosis.words import Quantity, quantities
 from designer.report import format as fmt
-from designer.report.diagnosis import words
-from designer.report.diagnosis.words import Quantity, quantities
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
 

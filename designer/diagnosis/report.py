@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from designer.analysis.provenance import Provenance
+from designer.diagnosis import contexts
 from designer.diagnosis.check import Check
+from designer.diagnosis.contexts import Context, shared
 from designer.diagnosis.result import Diagnosis
+from designer.diagnosis.words import kinds
 from designer.report import format as fmt
-from designer.report.diagnosis import contexts
-from designer.report.diagnosis.contexts import Context, shared
-from designer.report.diagnosis.words import kinds
 from designer.report.document import MOST_ROWS, Report, Section, control_of
 from designer.report.render import write_pages
 from designer.report.templates import Statement, plain_statement
