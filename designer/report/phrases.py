@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 _MOST_LISTED = 6
 """As many orientations as a line has room for."""
+_MOST_LENGTHS = 3
+"""As many different lengths as page 1 lists; the fabrication data have them cable by cable."""
 INPUT_NAMES: dict[str, str] = {
     "payload": "Payload",
     "modulus": "Modulus of the rope",
@@ -176,8 +178,10 @@ def orientation_words(study: Study) -> tuple[str, str] | None:
 
 
 def lengths(length_m: FloatArray) -> str:
-    """Return lengths as the fabrication data give them, alike ones such as ``6 × 338.20 m``."""
+    """Return lengths such as ``6 × 338.20 m`` for alike ones; of many that differ the range."""
     counts = Counter(fmt.fixed(float(length), 2) for length in length_m)
+    if len(counts) > _MOST_LENGTHS:
+        return f"{fmt.fixed(float(length_m.min()), 2)} to {fmt.metres(float(length_m.max()))}"
     each = [f"{count}\u00a0×\u00a0{text}" if count > 1 else text for text, count in counts.items()]
     return f"{fmt.listing(each)}\u00a0m"
 

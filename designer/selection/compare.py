@@ -167,7 +167,7 @@ def standing_of(
     if not verification.holds:
         least = "" if candidate.sampled.is_complete else "at least "
         percent = f"{least}{digits(100.0 * verification.utilisation)} %"
-        return "too_thin", f"meets {percent} of its allowable tension at {worst}"
+        return "too_thin", f"reaches {percent} of its allowable tension at {worst}"
     failed = rejection_words(candidate)
     if failed is not None and candidate is not best:
         return "rejected", failed

@@ -30,11 +30,11 @@ Outcome = Literal["fits", "rejected", "too_thin", "no_finite_cable", "open"]
 """``rejected``: sizes are strong enough, but fail another requirement; ``too_thin``: no size holds;
 ``no_finite_cable``: proved; ``open``: a pose was neither solved nor proved to be impossible."""
 WHY: Mapping[Standing, str] = {
-    "undominated": "holds, and no other beats it in everything that sizes are compared by",
-    "dominated": "holds, but another one is as good in everything and better in something",
+    "undominated": "holds and is Pareto-optimal, but not the best in the first objective",
+    "dominated": "holds, but another one is as good in every objective and better in one",
     "rejected": "is strong enough, but rejected by the requirement: {}",
-    "not_comparable": "holds, but what decides is not known of it",
-    "too_thin": "goes beyond its allowable tension",
+    "not_comparable": "holds, but its figure of the first objective is not known",
+    "too_thin": "exceeds its allowable tension",
     "not_held": "no equilibrium was found somewhere",
 }
 """Why sizes of a standing were not chosen; ``{}`` stands for the title of a requirement."""

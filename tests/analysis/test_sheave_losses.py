@@ -151,7 +151,7 @@ def test_pages_say_where_the_rope_bears_most(tmp_path: Path) -> None:
     assert "over the 0.8044 that 3 sheaves at 93.0 % keep where the winch pulls" in path
     assert "over the 0.8044 that 3 sheaves" in answer
     assert "No loss assumed" not in answer
-    assert "of a cable that rises from there this is on the safe side" in assumptions
+    assert "which is conservative for a cable that rises from there" in assumptions
     assert "1/0.93 of what is counted" in reactions
 
 

@@ -169,7 +169,7 @@ def test_three_effects_bent_to_one_force_have_it_as_rival(seed, capsys) -> None:
     found = found_in("plaza4", "tether", seed)
     assert len(found.findings) == 3
     assert all("platform_force" in rivals for rivals in told(found).values())
-    assert "one cause that goes smoothly with the place" in first_line(found, capsys)[1]
+    assert "one cause that varies smoothly with position" in first_line(found, capsys)[1]
 
 
 @pytest.mark.parametrize(

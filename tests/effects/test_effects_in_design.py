@@ -170,7 +170,7 @@ def test_candidates_are_proved_with_the_mass_that_they_have_there(iced: Analysis
 def test_the_report_says_what_stands_for_the_family(iced: Analysis) -> None:
     items = [item.text() for item in tree(section(Drawings(iced), "assumptions")).all("li")]
     (words,) = (text for text in items if "that the study declares" in text)
-    assert "do not act alike on all sections" in words
+    assert "influence depends on the section" in words
     assert "20\u00a0°C" in words
     result = json.loads(json.dumps(result_dict(iced), allow_nan=False))
     assert result["workspace"]["section_m"] == iced.section_m

@@ -72,9 +72,9 @@ def test_a_gain_that_reads_zero_is_no_better(tmp_path: Path) -> None:
 def test_a_design_that_asks_for_less_says_so(tmp_path: Path) -> None:
     plan = OF_POSE.replace("robot.anchors[*][2]: [6 m, 12 m]", "robot.platform.mass: [80 kg, 1 t]")
     found = optimum(tmp_path, plan.replace("1 t", "100 kg").replace("150", "10"))
-    (line,) = (one for one in trust_lines(found) if "what the study asks for" in one)
+    (line,) = (one for one in trust_lines(found) if "is a requirement of the study" in one)
     assert line.startswith("robot.platform.mass ")
-    assert "asks for less than the study, " in line and line.endswith("in place of 100 kg.")
+    assert "requires less than the study, " in line and line.endswith("in place of 100 kg.")
     assert [one["asks_for"] for one in found.to_dict()["variables"]] == [None, "less"]
 
 
@@ -98,7 +98,7 @@ def test_no_design_that_holds_is_no_flat_optimum(tmp_path: Path) -> None:
         STUDY.replace("pose: [10, 6, 4]", "pose: [10, 6, 14]"),
     )
     assert not found.holds
-    line = next(one for one in trust_lines(found) if one.startswith("No start came to a design"))
+    line = next(one for one in trust_lines(found) if one.startswith("No start reached a design"))
     count = len(found.searched.trials) - 1  # without the robot as given
     assert (
         f"of {count}\N{NO-BREAK SPACE}designs: the configured pose: no taut cables hold it." in line

@@ -234,7 +234,7 @@ def test_design_says_what_changes_and_what_does_not_reach_it(
 @pytest.mark.parametrize(
     ("n_cables", "start"),
     [
-        (2, "The robot has fewer cables than degrees of freedom;"),
+        (2, "The robot has fewer cables than degrees of freedom:"),
         (4, "The study has no workspace or no selection"),
     ],
 )

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import pytest
 from altered import altered
 from report_cases import DEFAULTS, FAST, PRISM, SELECTION, SIX
-from report_parts import FirstPage, cells, first_page, paragraphs, said
+from report_parts import FirstPage, cells, first_page, said
 from test_report_groups import YARD
 
 from designer.analysis.analyse import Analysis
@@ -88,7 +88,7 @@ def test_limits_of_the_grade_are_cautions(
     found = {s.title: s for s in page.confidence}
     assert titles == {t for t in found if t.startswith("Creep") or t == "Temperature"}
     assert all(found[title].tone == "doubt" for title in titles if title != "Temperature")
-    said = "Known of it: high." if limits and limits.creep else "says nothing of it"
+    said = "Source: high." if limits and limits.creep else "does not state it"
     assert said in found["Creep of yale-ultrex-hmpe"].text
     if "Temperature" in titles:
         assert "from −40 to 70\u00a0°C" in found["Temperature"].text
@@ -156,12 +156,13 @@ def test_fields_left_out_stand_in_the_appendix(fibre: Analysis) -> None:
     section = report.section("provenance")
     rows = cells(section, "Fields that the configuration file leaves out")
     named = {cell for row in rows for cell in row[::2] if cell}
-    (sentence,) = (text for text in paragraphs(section) if text.startswith("Not given"))
-    named |= set(re.findall(r"[a-z_]+(?:\.[a-z_]+)*", str(sentence).split(": ")[1])) - {"and"}
+    html = render_html(report)
+    folded = html.split("<details><summary>")[1].split("<p>")[1].split("</p>")[0]
+    named |= set(re.findall(r"[a-z_]+(?:\.[a-z_]+)*", folded))
+    named.discard("and")
     entries = (e for e in fibre.study.source.entries if e.given == "default")
     expected = [e.field for e in entries if not e.field.startswith("document.")]
     assert named == set(expected)
-    html = render_html(report)
     assert html.index('id="provenance"') < html.index("workspace.sampling")
 
 
@@ -169,9 +170,9 @@ def test_one_size_alone_is_said_in_words(fibre: Analysis, analyses: dict[str, An
     assert fibre.selection is not None
     assert len(fibre.selection.front) == 1
     shown = said(section(Drawings(fibre), "selection"))
-    assert "3/4 in beats every other size" in shown
+    assert "3/4 in dominates every other size" in shown
     none = said(section(Drawings(analyses["too_thin"]), "selection"))
-    assert "beats every other size" not in none and "nothing to weigh it against" not in none
+    assert "dominates every other size" not in none and "no trade-off" not in none
 
 
 def test_chart_tells_materials_apart(fibre: Analysis) -> None:

@@ -20,6 +20,7 @@ from designer.report.design.report import design_report
 from designer.report.figures import canvas
 from designer.report.figures.sections import slice_panels
 from designer.report.render import render_html
+from designer.report.templates import environment
 
 PATTERNS = {
     "exponent": r"(?<![\w/])\d+(?:\.\d+)?[eE][-+]?\d+\b",
@@ -113,6 +114,7 @@ def test_a_far_place_has_no_exponent() -> None:
 def test_alike_lengths_stand_once() -> None:
     alike = phrases.lengths(np.full(6, 338.2))
     assert alike == "6\u00a0×\u00a0338.20\u00a0m"
+    assert phrases.lengths(np.array([3.0, 1.0, 2.0, 4.5])) == "1.00 to 4.50\u00a0m"
     assert phrases.lengths(np.array([1.0, 2.0, 1.004])) == "2\u00a0×\u00a01.00 and 2.00\u00a0m"
 
 
@@ -159,3 +161,28 @@ def test_worst_pose_of_a_map_stands_in_its_title(redundant: Analysis) -> None:
         for axes in panels:
             assert "○ worst pose, " in axes.get_title(loc="left")
             assert all(text.get_text()[0] == "A" for text in axes.texts if text.get_text()[0] > "9")
+
+
+@pytest.mark.parametrize(("value", "is_given"), [(95.0, True), (30.9, False)])
+def test_an_estimate_far_off_is_no_figure(value: float, is_given: bool) -> None:
+    objective = SimpleNamespace(dimension=SimpleNamespace(unit="kg"), path="total_mass_kg")
+    optimum = SimpleNamespace(
+        plan=SimpleNamespace(objective=objective, variables=[], samples=40),
+        searched=SimpleNamespace(trials=[0, 1], elapsed_s=3.0, ended="settled"),
+        best=SimpleNamespace(value=value, values=[]),
+        given=SimpleNamespace(study=SimpleNamespace(workspace=None)),
+        after=100.0,
+        off=(100.0 - value) / value,
+        rejected=[],
+        unverified=0,
+        worsened=[],
+        reasons=[],
+        starts=[1],
+        agreeing=1,
+        out_of_bounds=[],
+        at_bounds=[],
+    )
+    sentences = environment().get_template("optimise/sentences.html.j2")
+    text = str(sentences.make_module({"optimum": optimum}).reliability())
+    assert (fmt.kilograms(value) in text) == is_given
+    assert ("too far off to be given as a figure" in text) != is_given

@@ -83,8 +83,8 @@ def test_sections_say_what_was_found(kept: Analysis, not_kept: Analysis) -> None
     ids = [section.id for section in bad.sections]
     assert ids.index("stiffness") + 1 == ids.index("clearance")
     html = render_html(bad)
-    assert "Cables are checked against each other" in html
-    assert "this is not checked" not in html
+    assert "Clearance of cables from each other" in html
+    assert "Contact of cables with each other" not in html
 
 
 def test_a_clearance_broken_between_samples_only(not_kept: Analysis) -> None:
