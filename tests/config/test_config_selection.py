@@ -29,6 +29,12 @@ def test_limit(valid: str, study_of: StudyOf) -> None:
     assert selection.max_distinct_products == 1
 
 
+def test_preferred_units_and_groups_exclude_each_other(valid: str, faults_of: FaultsOf) -> None:
+    (fault,) = faults_of(f"{valid}{GROUPS}  prefer: metric\n")
+    assert fault.field == "selection.groups"
+    assert fault.expected == "prefer or groups, not both"
+
+
 @pytest.mark.parametrize("text", ["", "  groups:\n"])
 def test_no_groups(valid: str, study_of: StudyOf, text: str) -> None:
     selection = study_of(valid + text).selection

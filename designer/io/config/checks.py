@@ -611,6 +611,11 @@ _EXCLUDES = (
         "uncertainty is computed for one rope on all cables",
         "uncertainty or groups, not both",
     ),
+    (
+        "selection.prefer",
+        "the sizes of groups are chosen by the objective alone, whatever their units",
+        "prefer or groups, not both",
+    ),
 )
 """Fields beside which groups of cables may not be."""
 
