@@ -118,9 +118,12 @@ def solve_batch(
     least_N = robot.tension_min_N if robot.is_redundant else 0.0
     rows = map(np.atleast_2d, (kappa_per_m, relative_weights, strength_m))
     kappa, weights, strength = map(plain, np.broadcast_arrays(*rows))
-    pulleys = plain(np.empty((0, 3)) if pulleys_m is None else pulleys_m)
-    radius = 0.0 if pulleys_m is None else robot.pulley_radius_m
-    figures = CableFigures(kappa, weights, strength, least_N, least_pulls(sag_max), pulleys, radius)
+    figures = CableFigures(kappa, weights, strength, least_N, least_pulls(sag_max))
+    if pulleys_m is not None:
+        pulleys, vertical = plain(pulleys_m), plain(robot.leaning[:, 2])
+        figures = figures._replace(
+            pulleys=pulleys, pulley_radius=robot.pulley_radius_m, vertical=vertical
+        )
     out = answer.Answers(
         np.empty((count, n, 3)),
         np.empty((count, 5)),

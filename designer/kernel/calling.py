@@ -81,9 +81,12 @@ class CableFigures(NamedTuple):
         Least pulls for the sag that is allowed, see `designer.kernel.least_pull`; no rows for any.
     pulleys : array (n_cables, 3)
         Exit points above the edges of the pulleys, in the frame of the situation; no rows without
-        pulleys, or where cables bow out of their planes [m].
+        pulleys [m].
     pulley_radius : float
-        Zero where there are no such rows [m].
+        Zero without pulleys [m].
+    vertical : array (3,)
+        Upward unit vector in which the pulleys stand, in that frame: where it is not its z axis,
+        cables bow out of the planes of their pulleys.
     """
 
     kappa: FloatArray
@@ -93,6 +96,7 @@ class CableFigures(NamedTuple):
     least_pulls: FloatArray = ANY_SAG
     pulleys: FloatArray = frozen_array(np.empty((0, 3)))
     pulley_radius: float = 0.0
+    vertical: FloatArray = frozen_array([0.0, 0.0, 1.0])
 
 
 class LoadSummary(NamedTuple):

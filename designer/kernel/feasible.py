@@ -29,7 +29,9 @@ of the axial stiffness and by a thousand times what is held or borne: beyond, no
 
 Over a pulley the exit point follows the cable: its place is solved at each pull, and what is said
 above holds for the curve that results. By the tangency the slope of the lift in the pull is that at
-a fixed exit point.
+a fixed exit point. Where the load on the cables is not vertical, they bow out of the planes of
+their pulleys, and turn as the exit point moves: what that makes of force along the horizontal chord
+and across it are two curves more, with bodies like that of the lift; slopes are then differences.
 """
 
 from __future__ import annotations
@@ -43,11 +45,14 @@ from designer.kernel.compiling import element, inner
 from designer.kernel.least_pull import least_pull
 from designer.kernel.linear import copy, solve_small
 from designer.kernel.pose import (
+    ASIDE,
     FORCE,
     LEAST,
-    PULLEY_D,
-    PULLEY_X,
+    LEAST_SLOPE,
+    MOST_SLOPE,
+    PULLEY,
     SIZE,
+    TOWARD,
     Ask,
     Pose,
     closing_length,
@@ -64,6 +69,8 @@ from designer.kernel.simplex import (
 )
 from designer.kernel.table import (
     CHORD,
+    EX,
+    EY,
     KAPPA,
     LANE_ROWS,
     LEVEL,
@@ -91,6 +98,8 @@ _MOST_BORNE = 10.0
 """Of the load, over the tension of a straight cable: a generous bound."""
 _OUTWARD = 1e-7
 """Relative, by which ends of a range that are found by iteration are moved outward."""
+_JUST_ABOVE = 4e-10
+"""The same of the strength: by less than what counts as at the limit, so that ends are answers."""
 _TOWARD_MIDDLE = 0.4
 _LEAST_SHARE = 0.05
 """Of a range, in logarithms, that is left on either side of a cut."""
@@ -98,10 +107,18 @@ _NARROWEST = 1.0 + 1e-9
 """Ratio of the ends of a range that is not cut again."""
 _ITERATIONS = 8
 _HALVINGS = 30
+_TURNS = 60
+_TANGENT = 1e-14
+"""Angle to the pulley at which a cable leaves it [rad]."""
+_STEP = 1e-5
+"""Relative, of a difference that gives a slope."""
 
-# Rows of a part's lines: ends of the range, lift at no pull, slope, what the curve may be below and
-# above that line.
+# Rows of a part's lines: ends of the range, then lift at no pull, slope, what the curve may be
+# below and above that line, and those four again for the forces along and across the chord.
 LOW, HIGH, REST, SLOPE, BELOW, ABOVE = range(6)
+_CURVE_ROWS = 4
+_DIRECTIONS = LIFT, LEVEL, ASIDE
+"""Wrenches of the curves."""
 
 
 class Parts(NamedTuple):
@@ -112,15 +129,15 @@ class Parts(NamedTuple):
     ranges : array (depth, 2, n + 1)
         Lowest and highest pull of each cable, and least and largest scaled c, in each part that is
         yet to be decided.
-    lines : array (6, n)
+    lines : array (2 + 4 n_curves, n)
         Bodies of the present part.
-    nodes : array (3, n_nodes)
-        Pulls of a cable, its lift there, and the slope of that.
-    columns : array (m, 2 n + 1)
+    nodes : array (1 + 2 n_curves, n_nodes)
+        Pulls of a cable, its lift there, and the slope of that; then of the other curves.
+    columns : array (m, (1 + n_curves) n + 1)
         The linear programme as it was written.
-    pulls, lifts : array (2, n)
+    pulls, lifts : array (2, n), (2, n_curves, n)
         Of the point that bears most, then of that which bears least; first row also of the point
-        to start from.
+        to start from. Beside lifts the values of the other curves.
     borne : array (1,)
         What that point bears, as scaled c.
     wrench : array (m,)
@@ -144,21 +161,21 @@ class Parts(NamedTuple):
 
 
 @inner
-def new_parts(m: int, n: int) -> tuple[Parts, Programme]:
-    """Return the arrays for n cables in m equations."""
+def new_parts(m: int, n: int, curves: int = 1) -> tuple[Parts, Programme]:
+    """Return the arrays for n cables in m equations, with one curve a cable or three."""
     parts = Parts(
         np.zeros((_DEPTH, 2, n + 1)),
-        np.zeros((6, n)),
-        np.zeros((3, _NODES)),
-        np.zeros((m, 2 * n + 1)),
+        np.zeros((2 + _CURVE_ROWS * curves, n)),
+        np.zeros((1 + 2 * curves, _NODES)),
+        np.zeros((m, (1 + curves) * n + 1)),
         np.zeros((2, n)),
-        np.zeros((2, n)),
+        np.zeros((2, curves, n)),
         np.zeros(1),
         np.zeros(m),
         np.zeros((m, m + 1)),
         np.zeros((LANE_ROWS, 1)),
     )
-    return parts, new_programme(m, 2 * n)
+    return parts, new_programme(m, (1 + curves) * n)
 
 
 @element
@@ -190,6 +207,8 @@ def set_ranges(pose: Pose, parts: Parts, ask: Ask, any_strength: bool) -> int:
     whole[0, n] = ask.c_0
     whole[1, n] = ask.c_0
     for i in range(n):
+        if pose.radius > 0.0 and np.isnan(c[LEAST_SLOPE, i]):
+            return FAILED
         low = _floor(pose, parts, i)
         least = _least_tension(pose, i, ask.c_0)
         if least > 0.0:
@@ -211,19 +230,25 @@ def set_ranges(pose: Pose, parts: Parts, ask: Ask, any_strength: bool) -> int:
 
 @inner
 def _floor(pose: Pose, parts: Parts, i: int) -> float:
-    """Return the least pull for the sag that is allowed, over a pulley as well."""
+    """Return the least pull for the sag that is allowed; over a pulley by secants."""
     c, column = pose.cables, parts.column
     across, drop = c[X2, i], c[D, i]
     straight = np.sqrt(across)
-    low = 0.0
-    for _ in range(_ITERATIONS if pose.radius > 0.0 else 1):
+    low, step, low_before, step_before = 0.0, 0.0, np.nan, np.nan
+    for turn in range(_TURNS):
         column[X2, 0], column[D, 0], column[CHORD, 0] = across, drop, np.sqrt(across + drop * drop)
         p = least_pull(pose.least_pulls, column, 0, c[KAPPA, i])
-        low = p * np.sqrt(across) / straight if pose.radius > 0.0 else p
-        if pose.radius > 0.0:
-            X, drop = _tangent(pose, i, low)
-            across = X * X
-    return float(low / (1.0 + _OUTWARD))
+        if pose.radius == 0.0:
+            return float(p / (1.0 + _OUTWARD))
+        step = p * np.sqrt(across) / straight - low
+        if abs(step) <= 1e-3 * _OUTWARD * low:
+            break
+        share = (low - low_before) / (step_before - step) if turn > 1 else 1.0
+        low_before, step_before = low, step
+        low += min(max(share, _LEAST_SHARE), 1.0) * step
+        x, y, drop, _ = _tangent(pose, i, low)
+        across = x * x + y * y
+    return float(min(low, low + step) / (1.0 + _OUTWARD))
 
 
 @inner
@@ -260,7 +285,7 @@ def _pull_at_least(pose: Pose, i: int, low: float, least: float) -> float:
 def _least_at(pose: Pose, i: int, p: float) -> tuple[float, float]:
     """Return the least tension anywhere in a cable over its weight, and about its slope."""
     straight = np.sqrt(pose.cables[X2, i])
-    length, v, v_p, _, _, X, drop = _hang(pose, i, p)
+    length, v, v_p, _, _, X, drop, _, _ = _hang(pose, i, p)
     share = straight / X if pose.radius > 0.0 else 1.0
     tension, slope = lowest_tension(p * share, length, 0.0, v, v_p / share, X * X, drop)
     return tension, slope * share
@@ -271,95 +296,148 @@ def _pull_at_strength(pose: Pose, i: int, low: float) -> float:
     """Return a pull that is hardly above the largest that the strength bears; NaN if there is none.
 
     The top tension is convex in the pull, and pull times chord at least: Newton comes down to it.
+    Over a pulley the slope is about that at a fixed exit point: from both sides.
     """
-    c = pose.cables
-    p = c[STRENGTH, i] / c[CHORD, i] * (1.0 + (_OUTWARD if pose.radius == 0.0 else 0.1))
-    for _ in range(2):
-        _, _, _, t, t_p, _, _ = _hang(pose, i, p)
-        if not t_p > 0.0:
-            return float(
-                p
-            )  # past the pull of least tension: nothing is known but that this is enough
+    c, moves = pose.cables, pose.radius > 0.0
+    most = c[STRENGTH, i] / c[CHORD, i] * (1.0 + _OUTWARD)
+    while moves and _hang(pose, i, most)[3] < c[STRENGTH, i]:
+        most *= 2.0
+    p = most
+    for _ in range(_ITERATIONS):
+        _, _, _, t, t_p, _, _, _, _ = _hang(pose, i, p)
+        if not t_p > 0.0:  # past the pull of least tension: all that is known is that it will do
+            return float(most if moves else p)
         nearer = p - (t - c[STRENGTH, i]) / t_p
-        if nearer < low:
+        if nearer < low and not (moves and p > low):
             return np.nan
-        p = min(p, nearer)
-    return float(p * (1.0 + _OUTWARD))
+        before, p = p, max(nearer, low) if moves else min(p, nearer)
+        if abs(before - p) < 0.1 * _JUST_ABOVE * p:
+            break
+    p *= 1.0 + _JUST_ABOVE
+    return float(most if moves and _hang(pose, i, p)[3] < c[STRENGTH, i] else p)
 
 
 @inner
-def _hang(pose: Pose, i: int, p: float) -> tuple[float, float, float, float, float, float, float]:
+def _hang(
+    pose: Pose, i: int, p: float
+) -> tuple[float, float, float, float, float, float, float, float, float]:
     """Return length, lift, its slope, top tension, its slope, and distance and drop of the ends.
 
-    At a pull over the distance from where the straight cable leaves.
+    At a pull over the distance from where the straight cable leaves; then what of that pull is
+    along its chord, beyond the whole, and what is across it.
     """
     c = pose.cables
-    across, drop, share = c[X2, i], c[D, i], 1.0
+    across, drop, share, along, aside = c[X2, i], c[D, i], 1.0, 0.0, 0.0
     if pose.radius > 0.0:
-        X, drop = _tangent(pose, i, p)
-        share = np.sqrt(across) / X
-        across = X * X
+        x, y, drop, _ = _tangent(pose, i, p)
+        straight, across = across, x * x + y * y
+        share = np.sqrt(straight / across)
+        turned = p / np.sqrt(straight * across)
+        along = turned * (c[EX, i] * x + c[EY, i] * y) - p
+        aside = turned * (c[EX, i] * y - c[EY, i] * x)
     length = closing_length(p * share, across, drop, c[KAPPA, i], 1)
     l_0, _, v, v_p, t, t_p, _ = condensed(p * share, length, across, drop, c[KAPPA, i])
-    return length + l_0, v, v_p * share, t, t_p * share, np.sqrt(across), drop
+    return length + l_0, v, v_p * share, t, t_p * share, np.sqrt(across), drop, along, aside
 
 
 @inner
-def _tangent(pose: Pose, i: int, p: float) -> tuple[float, float]:
-    """Return distance and drop from where a sagging cable leaves its pulley."""
-    c, r = pose.cables, pose.radius
+def _tangent(pose: Pose, i: int, p: float) -> tuple[float, float, float, float]:
+    """Return from where a sagging cable leaves its pulley: vector in plan, drop and slope there.
+
+    A cable that hangs from some point of the rim points past it there, toward where it leaves: so
+    that is between where the straight cable would, and where the load would point along the rim.
+    By secants, else by halving.
+    """
+    c, r, up = pose.cables, pose.radius, pose.vertical
     pull = p * np.sqrt(c[X2, i])
-    X, drop = np.sqrt(c[X2, i]), c[D, i]
-    for _ in range(_ITERATIONS):
+    low, high = c[LEAST_SLOPE, i], c[MOST_SLOPE, i]
+    slope, before, turn_before = low, np.nan, np.nan
+    x, y, drop = np.nan, np.nan, np.nan
+    for _ in range(_TURNS):
+        out, above = r * (1.0 + np.sin(slope)), r * np.cos(slope)
+        x = c[PULLEY, i] + out * c[TOWARD, i] + above * up[0]
+        y = c[PULLEY + 1, i] + out * c[TOWARD + 1, i] + above * up[1]
+        drop = c[PULLEY + 2, i] + out * c[TOWARD + 2, i] + above * up[2]
+        X = np.sqrt(x * x + y * y)
         length = closing_length(pull / X, X * X, drop, c[KAPPA, i], 1)
-        _, _, v, _, _, _, _ = condensed(pull / X, length, X * X, drop, c[KAPPA, i])
-        down = length + v
-        size = np.sqrt(pull * pull + down * down)
-        X, drop = c[PULLEY_X, i] - r * (1.0 + down / size), c[PULLEY_D, i] + r * pull / size
-        if not X > 0.0:
-            return np.nan, np.nan
-    return X, drop
+        l_0, _, v, _, _, _, _ = condensed(pull / X, length, X * X, drop, c[KAPPA, i])
+        down, level = length + l_0 + v, pull / X
+        falls = level * (x * up[0] + y * up[1]) + down * up[2]
+        leads = -level * (x * c[TOWARD, i] + y * c[TOWARD + 1, i]) - down * c[TOWARD + 2, i]
+        cos, sin = np.cos(slope), np.sin(slope)
+        turn = np.arctan2(falls * cos - leads * sin, falls * sin + leads * cos)
+        if abs(turn) < _TANGENT:
+            break
+        is_beyond = x * c[EX, i] + y * c[EY, i] <= 0.0
+        if is_beyond or (turn > 0.0) != (high > low):
+            high = slope
+        else:
+            low = slope
+        gain = -1.0 if np.isnan(before) or is_beyond else (turn - turn_before) / (slope - before)
+        before, turn_before = slope, turn
+        slope -= turn / gain
+        if is_beyond or not min(low, high) < slope < max(low, high):
+            slope = 0.5 * (low + high)
+    return x, y, drop, slope
 
 
 @inner
 def leaving_slope(pose: Pose, i: int, p: float) -> float:
-    """Return the angle below the horizontal at which a cable of this pull leaves [rad]."""
-    length, v, _, _, _, _, _ = _hang(pose, i, p)
-    return float(np.arctan2(length + v, p * np.sqrt(pose.cables[X2, i])))
+    """Return the angle below the horizontal at which a cable of this pull leaves [rad].
+
+    In the plane of its present chord, in which its direction is as steep along the pulley.
+    """
+    c, up = pose.cables, pose.vertical
+    slope, X = _tangent(pose, i, p)[3], np.sqrt(c[X2, i])
+    x = np.sin(slope) * c[TOWARD, i] + np.cos(slope) * up[0]
+    y = np.sin(slope) * c[TOWARD + 1, i] + np.cos(slope) * up[1]
+    z = np.sin(slope) * c[TOWARD + 2, i] + np.cos(slope) * up[2]
+    return float(-np.arctan((x * c[EX, i] + y * c[EY, i]) / (z * X)))
 
 
 @inner
 def _enclose(pose: Pose, parts: Parts, i: int, low: float, high: float) -> bool:
     """Fill the line and the body of a cable between two pulls; False if they can't be told."""
-    c, nodes, lines = pose.cables, parts.nodes, parts.lines
+    c, nodes, lines, curves = pose.cables, parts.nodes, parts.lines, parts.lifts.shape[1]
     ratio = (high / low) ** (1.0 / (_NODES - 1))
     p = low
     for j in range(_NODES):
         nodes[0, j] = p
         p *= ratio
     nodes[0, _NODES - 1] = high
-    if pose.radius > 0.0:
-        for j in range(_NODES):
-            _, nodes[1, j], nodes[2, j], _, _, _, _ = _hang(pose, i, nodes[0, j])
-    else:
+    if pose.radius == 0.0:
         _lifts(nodes[0], c[X2, i], c[D, i], c[KAPPA, i], nodes[1], nodes[2])
-    v, slope = nodes[1], nodes[2]
-    k = (v[_NODES - 1] - v[0]) / (high - low)
-    below, above, away = 0.0, 0.0, 0.0
-    for j in range(1, _NODES):
-        width = nodes[0, j] - nodes[0, j - 1]
-        secant = (v[j] - v[j - 1]) / width
-        turns = abs(slope[j - 1] - secant) + abs(slope[j] - secant)
-        bulge = _MARGIN * 0.25 * width * turns
-        ahead = v[j] - v[0] - k * (nodes[0, j] - low)
-        if j == _NODES - 1:
-            ahead = 0.0
-        below = min(below, min(away, ahead) - bulge)
-        above = max(above, max(away, ahead) + bulge)
-        away = ahead
-    lines[LOW, i], lines[HIGH, i], lines[REST, i], lines[SLOPE, i] = low, high, v[0] - k * low, k
-    lines[BELOW, i], lines[ABOVE, i] = below, above
-    return bool(above - below < np.inf)
+    for j in range(_NODES if pose.radius > 0.0 else 0):
+        p = nodes[0, j]
+        _, nodes[1, j], nodes[2, j], _, _, _, _, along, aside = _hang(pose, i, p)
+        if curves > 1:
+            _, lift_0, _, _, _, _, _, along_0, aside_0 = _hang(pose, i, p * (1.0 - _STEP))
+            _, lift_1, _, _, _, _, _, along_1, aside_1 = _hang(pose, i, p * (1.0 + _STEP))
+            width = 2.0 * _STEP * p
+            nodes[2, j] = (lift_1 - lift_0) / width
+            nodes[3, j], nodes[4, j] = along, (along_1 - along_0) / width
+            nodes[5, j], nodes[6, j] = aside, (aside_1 - aside_0) / width
+    lines[LOW, i], lines[HIGH, i] = low, high
+    thick = 0.0
+    for q in range(curves):
+        v, slope, rows = nodes[1 + 2 * q], nodes[2 + 2 * q], _CURVE_ROWS * q
+        k = (v[_NODES - 1] - v[0]) / (high - low)
+        below, above, away = 0.0, 0.0, 0.0
+        for j in range(1, _NODES):
+            width = nodes[0, j] - nodes[0, j - 1]
+            secant = (v[j] - v[j - 1]) / width
+            turns = abs(slope[j - 1] - secant) + abs(slope[j] - secant)
+            bulge = _MARGIN * 0.25 * width * turns
+            ahead = v[j] - v[0] - k * (nodes[0, j] - low)
+            if j == _NODES - 1:
+                ahead = 0.0
+            below = min(below, min(away, ahead) - bulge)
+            above = max(above, max(away, ahead) + bulge)
+            away = ahead
+        lines[REST + rows, i], lines[SLOPE + rows, i] = v[0] - k * low, k
+        lines[BELOW + rows, i], lines[ABOVE + rows, i] = below, above
+        thick += above - below
+    return bool(thick < np.inf)
 
 
 @inner
@@ -404,7 +482,9 @@ def bound_part(pose: Pose, parts: Parts, part: int, lp: Programme, ask: Ask) -> 
         share = min(max((c - least) / max(most - least, 1e-300), 0.0), 1.0)
         for i in range(n):
             parts.pulls[0, i] += (1.0 - share) * (parts.pulls[1, i] - parts.pulls[0, i])
-            parts.lifts[0, i] += (1.0 - share) * (parts.lifts[1, i] - parts.lifts[0, i])
+            for q in range(parts.lifts.shape[1]):
+                rest = parts.lifts[1, q, i] - parts.lifts[0, q, i]
+                parts.lifts[0, q, i] += (1.0 - share) * rest
     parts.borne[0] = c / to_force
     apart = 0.0
     for i in range(n):
@@ -427,12 +507,16 @@ def _keep_least(pose: Pose, box: FloatArray) -> bool:
 
 @inner
 def _distance(pose: Pose, parts: Parts, i: int) -> float:
-    """Return how far the lift of the point is from that of the cable at its pull, over w."""
-    c, lever = pose.cables, 0.0
-    lift = _hang(pose, i, parts.pulls[0, i])[1]
-    for k in pose.rows:
-        lever = max(lever, abs(c[LIFT + k, i]))
-    return float(abs(lift - parts.lifts[0, i]) * c[SHARE, i] * lever)
+    """Return how far the point is from the curves of the cable at its pull, over w."""
+    c, farthest = pose.cables, 0.0
+    _, lift, _, _, _, _, _, along, aside = _hang(pose, i, parts.pulls[0, i])
+    for q in range(parts.lifts.shape[1]):
+        lever = 0.0
+        for k in pose.rows:
+            lever = max(lever, abs(c[_DIRECTIONS[q] + k, i]))
+        there = lift if q == 0 else along if q == 1 else aside
+        farthest = max(farthest, abs(there - parts.lifts[0, q, i]) * lever)
+    return float(farthest * c[SHARE, i])
 
 
 @inner
@@ -455,24 +539,37 @@ def _bear(
     programme ends otherwise. The multipliers go into the wrench.
     """
     c, lines, table = pose.cables, parts.lines, lp.table
-    m, n = lp.basis.size, c.shape[1]
+    m, n, curves = lp.basis.size, c.shape[1], parts.lifts.shape[1]
+    last = (1 + curves) * n
     for i in range(n):
         unit = force / (c[SHARE, i] * c[CHORD, i])
         lp.room[i] = (lines[HIGH, i] - lines[LOW, i]) / unit
-        lp.room[n + i] = (lines[ABOVE, i] - lines[BELOW, i]) * c[SHARE, i] / force
+        for q in range(curves):
+            thick = lines[ABOVE + _CURVE_ROWS * q, i] - lines[BELOW + _CURVE_ROWS * q, i]
+            lp.room[n * (1 + q) + i] = thick / _unit(pose, i, q, force)
     for k in range(m):
         at = pose.rows[k]
         rest = 0.0
         for i in range(n):
-            unit = force / (c[SHARE, i] * c[CHORD, i])
-            own = (c[LEVEL + at, i] + c[LIFT + at, i] * lines[SLOPE, i]) / c[CHORD, i]
-            up = c[SHARE, i] * (lines[REST, i] + lines[BELOW, i]) / force
-            table[k, i], table[k, n + i] = own, c[LIFT + at, i]
-            rest -= own * lines[LOW, i] / unit + up * c[LIFT + at, i]
-        for j in range(2 * n):
+            own = c[LEVEL + at, i]
+            for q in range(curves):
+                rows, direction = _CURVE_ROWS * q, c[_DIRECTIONS[q] + at, i]
+                own += direction * lines[SLOPE + rows, i]
+                table[k, n * (1 + q) + i] = (
+                    direction * _unit(pose, i, q, force) * c[SHARE, i] / force
+                )
+                rest -= (
+                    direction
+                    * (lines[REST + rows, i] + lines[BELOW + rows, i])
+                    * c[SHARE, i]
+                    / force
+                )
+            table[k, i] = own / c[CHORD, i]
+            rest -= own * lines[LOW, i] * c[SHARE, i] / force
+        for j in range(last):
             parts.columns[k, j] = table[k, j]
-        parts.columns[k, 2 * n] = table[k, 2 * n] = lp.slope[k] = -sign * pose.load[at]
-        table[k, 2 * n + 1] = rest
+        parts.columns[k, last] = table[k, last] = lp.slope[k] = -sign * pose.load[at]
+        table[k, last + 1] = rest
     if not choose_basis(lp):
         return FAILED, np.nan
     status = maximise(lp)
@@ -483,14 +580,23 @@ def _bear(
     for i in range(n):
         unit = force / (c[SHARE, i] * c[CHORD, i])
         p = min(max(lines[LOW, i] + unit * lp.z[i], lines[LOW, i]), lines[HIGH, i])
-        error = lines[BELOW, i] + lp.z[n + i] * force / c[SHARE, i]
         parts.pulls[row, i] = p
-        parts.lifts[row, i] = lines[REST, i] + lines[SLOPE, i] * p + error
+        for q in range(curves):
+            rows = _CURVE_ROWS * q
+            error = lines[BELOW + rows, i] + lp.z[n * (1 + q) + i] * _unit(pose, i, q, force)
+            parts.lifts[row, q, i] = lines[REST + rows, i] + lines[SLOPE + rows, i] * p + error
     s_row = 0
     for k in range(m):
-        if lp.basis[k] == 2 * n:
+        if lp.basis[k] == last:
             s_row = k
-    return UNDECIDED if _value(parts, lp, s_row) else FAILED, float(lp.z[2 * n])
+    return UNDECIDED if _value(parts, lp, s_row) else FAILED, float(lp.z[last])
+
+
+@element
+def _unit(pose: Pose, i: int, q: int, force: float) -> float:
+    """Return what a curve is measured in by the linear programme: lifts are lengths, else pulls."""
+    c = pose.cables
+    return float(force / (c[SHARE, i] * (1.0 if q == 0 else c[CHORD, i])))
 
 
 @inner
@@ -539,15 +645,22 @@ def _support(pose: Pose, parts: Parts, y: FloatArray, force: float) -> tuple[flo
     c, lines = pose.cables, parts.lines
     total, size = 0.0, 0.0
     for i in range(c.shape[1]):
-        alpha, beta = 0.0, 0.0
+        along, rest, rest_size = 0.0, 0.0, 0.0
         for k in range(y.size):
-            alpha += y[k] * c[LEVEL + pose.rows[k], i]
-            beta += y[k] * c[LIFT + pose.rows[k], i]
-        along = alpha + beta * lines[SLOPE, i]
+            along += y[k] * c[LEVEL + pose.rows[k], i]
+        for q in range(parts.lifts.shape[1]):
+            rows, beta = _CURVE_ROWS * q, 0.0
+            for k in range(y.size):
+                beta += y[k] * c[_DIRECTIONS[q] + pose.rows[k], i]
+            along += beta * lines[SLOPE + rows, i]
+            of_curve = beta * (
+                lines[REST + rows, i] + lines[(ABOVE if beta > 0.0 else BELOW) + rows, i]
+            )
+            rest += of_curve
+            rest_size += abs(of_curve)
         work = along * lines[HIGH if along > 0.0 else LOW, i]
-        rest = beta * (lines[REST, i] + lines[ABOVE if beta > 0.0 else BELOW, i])
         total += (work + rest) * c[SHARE, i] / force
-        size += (abs(work) + abs(rest)) * c[SHARE, i] / force
+        size += (abs(work) + rest_size) * c[SHARE, i] / force
     return total, size
 
 

@@ -69,14 +69,20 @@ STEP, D_ROOM, D_HEIGHT, D_MU_ROOM, D_MU_HEIGHT = range(COUPLING + 1, COUPLING + 
 TOP, TOP_S, UP = range(D_MU_HEIGHT + 1, D_MU_HEIGHT + 4)
 # Scaled wrench per unit of scaled pull, six rows.
 WRENCH = UP + 1
-# Distance and drop from the exit point, above the pulley's edge, to the attachment.
-PULLEY_X, PULLEY_D = WRENCH + 6, WRENCH + 7
-_ROWS = WRENCH + 8
+# Wrench of a unit pull across the cable's plane, six rows.
+ASIDE = WRENCH + 6
+# Of a pulley: the vector from the attachment to the exit point, above the pulley's edge; the
+# horizontal unit vector toward the attachment; angles below the horizontal of the straight cable
+# where it leaves, and of the load on the cable.
+PULLEY, TOWARD, LEAST_SLOPE, MOST_SLOPE = ASIDE + 6, ASIDE + 9, ASIDE + 12, ASIDE + 13
+_ROWS = ASIDE + 14
 
 OPTIMAL_WITHIN = 1e-6
 """Largest last step, or residual of the optimality conditions, of an answer."""
 NOTHING = 1e-9
 """Scaled inverse weight below which straight cables hold nothing."""
+_AT_SAG = 1.0 + 1.1e-7
+"""Least pull over the pull up to which the sag counts as allowed: the margin of the least pulls."""
 _ALONG = 1e-5
 """Relative step of the difference that gives second slopes: the root of rounding, about."""
 
@@ -110,6 +116,8 @@ class Pose(NamedTuple):
         See `designer.kernel.least_pull`.
     radius : float
         Of the pulleys, zero without [m].
+    vertical : array (3,)
+        Upward unit vector in which the pulleys stand.
     block : array (rows of a block × its cables,)
         Some of the table's rows for a few cables; see `bend`.
     """
@@ -121,6 +129,7 @@ class Pose(NamedTuple):
     scale: FloatArray
     least_pulls: FloatArray
     radius: float
+    vertical: FloatArray
     block: FloatArray
 
 
@@ -149,6 +158,7 @@ def new_pose(situation: Situation, figures: CableFigures) -> Pose:
         np.ones(3),
         figures.least_pulls,
         figures.pulley_radius,
+        figures.vertical,
         np.zeros(_BLOCK_ROWS * _BLOCK),
     )
 
@@ -166,8 +176,6 @@ def place(pose: Pose, situation: Situation, figures: CableFigures, at: int) -> N
         c[LEAST, i] = figures.least_tension / c[SHARE, i]
         scale[FORCE] = max(scale[FORCE], c[SHARE, i] * c[STRENGTH, i])
         c[UNIT, i] = c[STRENGTH, i] / c[CHORD, i]
-        if pose.radius > 0.0:
-            _place_pulley(pose, situation, figures, at, i)
         reach = max(reach, c[LEVER, i])
     scale[REACH] = reach = reach if reach > 0.0 else 1.0
     applied = load_of(situation, at)
@@ -178,6 +186,8 @@ def place(pose: Pose, situation: Situation, figures: CableFigures, at: int) -> N
         for i in range(c.shape[1]):
             c[LEVEL + k, i] /= reach
             c[LIFT + k, i] /= reach
+    for i in range(c.shape[1] if pose.radius > 0.0 else 0):
+        _place_pulley(pose, situation, figures, at, i)
     for k in range(6):
         size = max(size, abs(load[k]))
     for k in range(6):
@@ -187,12 +197,28 @@ def place(pose: Pose, situation: Situation, figures: CableFigures, at: int) -> N
 
 @inner
 def _place_pulley(pose: Pose, situation: Situation, figures: CableFigures, at: int, i: int) -> None:
-    """Fill distance and drop from an exit point that has a pulley."""
-    c, A = pose.cables, figures.pulleys[i]
+    """Fill what is to be known of a cable that begins at a pulley."""
+    c, up, r = pose.cables, pose.vertical, pose.radius
     leaves = situation.exit_points[at if situation.exit_points.shape[0] > 1 else 0, i]
-    x, y = A[0] - leaves[0] + c[LEVEL, i], A[1] - leaves[1] + c[LEVEL + 1, i]
-    c[PULLEY_X, i] = np.sqrt(x * x + y * y)
-    c[PULLEY_D, i] = A[2] - leaves[2] + c[D, i]
+    drop, X2 = 0.0, 0.0
+    for k in range(3):
+        chord = c[LEVEL + k, i] if k < 2 else c[D, i]
+        c[PULLEY + k, i] = chord + figures.pulleys[i, k] - leaves[k]
+        drop += c[PULLEY + k, i] * up[k]
+    for k in range(3):
+        c[TOWARD + k, i] = drop * up[k] - c[PULLEY + k, i]
+        X2 += c[TOWARD + k, i] ** 2
+    X = np.sqrt(X2)
+    for k in range(3):
+        c[TOWARD + k, i] /= X
+    beyond = X - r
+    distance = np.sqrt(beyond * beyond + drop * drop)
+    c[LEAST_SLOPE, i] = np.arctan2(drop, beyond) + np.arcsin(r / distance)
+    c[MOST_SLOPE, i] = np.arctan2(up[2], -c[TOWARD + 2, i])
+    ex, ey = c[LEVEL, i], c[LEVEL + 1, i]
+    c[ASIDE, i], c[ASIDE + 1, i], c[ASIDE + 2, i] = -ey, ex, 0.0
+    c[ASIDE + 3, i], c[ASIDE + 4, i] = -c[LEVEL + 4, i], c[LEVEL + 3, i]
+    c[ASIDE + 5, i] = c[LIFT + 3, i] * ey - c[LIFT + 4, i] * ex
 
 
 @inner
@@ -394,7 +420,7 @@ def _measure(pose: Pose, c: float) -> tuple[float, float, float, float]:
         apart = max(apart, abs(F / F_l) / length) + 0.0 * F
         lowest, _ = lowest_tension(p, length, 0.0, v, 0.0, cables[X2, i], cables[D, i])
         is_held = (
-            p * AT_LIMIT >= cables[FLOOR, i]
+            p * _AT_SAG >= cables[FLOOR, i]
             and t > 0.0
             and lowest * AT_LIMIT >= c * cables[LEAST, i]
         )

@@ -119,6 +119,8 @@ _NEARER = 0.1
 """Of its distance from the curves: what a point has to be nearer by to be the next start."""
 _ON_CURVES = 1e-11
 """Distance from the curves, over the forces, at which a point is an equilibrium."""
+_AT_ROUNDING = 1e-13
+"""The same, as near as it gets."""
 _LIGHTER = 1.0 + 1e-5
 """Of the inverse weight: what a better answer has at least; half of it in diameter."""
 _MOST_BETTER = 8
@@ -142,7 +144,8 @@ def solve_redundant_range(
     pose = new_pose(situation, figures)
     lp = new_programme(m, n)
     scratch = new_scratch(m, n)
-    parts, bodies = new_parts(m, n)
+    bows_out = figures.pulley_radius > 0.0 and figures.vertical[2] < 1.0
+    parts, bodies = new_parts(m, n, 3 if bows_out else 1)
     for at in range(start, stop):
         place(pose, situation, figures, at)
         out.wrench[at] = np.nan
@@ -213,6 +216,7 @@ def _decide(
                 if turn == 0:
                     copy(parts.wrench, out.wrench[at])
                 if count == 0:
+                    out.leaving[at] = np.nan
                     return _refusal(pose, parts, bodies, ask, out, at)
                 continue
         if turn == 0 and straight_c > NOTHING:
@@ -231,6 +235,8 @@ def _decide(
                 out.leaving[at, i] = leaving_slope(pose, i, parts.pulls[0, i])
             if _store(out, at, pose, ask, s, gap, straight_c) == SOLVED:
                 return SOLVED
+            if pose.radius > 0.0 and apart < _AT_ROUNDING:
+                break  # an equilibrium, but over pulleys that are yet to be moved
         if not cut_part(pose, parts, count - 1, ask):
             break
         count += 1

@@ -169,7 +169,7 @@ class Verdict(IntEnum):
         State.FAILS,
         ("LEFT_OUT", "xxxxxx"),
         "a cable of no length",
-        "a cable has no length: its attachment is at its exit point",
+        "a cable has no length: its attachment is at its exit point, or within its pulley",
     )
 
     @property

@@ -23,7 +23,7 @@ MOST_ITERATIONS = 40
 STILL_RAD, SETTLED_RAD = 1e-13, 1e-9
 """Last change of the angle at which a cable leaves its pulley: at rounding, and good enough."""
 _PATIENCE = 8
-"""Turns after which a pose that does not come nearer moves by half as much."""
+"""Turns after which each cable goes by its own secant."""
 _LEAST_SHARE = 1.0 / 32.0
 """Of the way to the next tangent point, however it swings."""
 Answer = TypeVar("Answer")
@@ -80,8 +80,6 @@ def _slope_over_pulley_rad(
 
     ``slope_rad`` (...) is that in the plane of load and chord, from across the load.
     """
-    if robot.cable_load_direction is None:
-        return slope_rad
     outward = cable_geometry(robot, poses, run.exit_points_m).outward
     down = -np.sin(slope_rad)[..., None]
     along = np.concatenate([np.cos(slope_rad)[..., None] * outward, down], axis=-1) @ robot.leaning
@@ -111,7 +109,7 @@ def over_pulleys(
 
     The tangent point follows the slope of the sagging cable at its upper end, which moves by about
     radius over length of what the tangent point moved: a handful of turns reach rounding. Slack
-    cables over a large pulley may swing between two ways to hang; steps are then made shorter.
+    cables over a large pulley may swing between two ways to hang: each then goes by its secant.
 
     Parameters
     ----------
@@ -133,8 +131,9 @@ def over_pulleys(
         return solve(run)[0], run, np.zeros(poses.shape)
     level = level_geometry(robot, poses)
     slope = straight = _straight_slope_rad(robot, level)
+    slope_before = step_before = np.zeros_like(slope)
     strain: FloatArray | float = 0.0
-    share, gap = np.ones(poses.shape), np.full(poses.shape, np.inf)
+    share, gap = np.ones(straight.shape), np.full(poses.shape, np.inf)
     for iteration in range(turns):
         run = run_at(robot, level, slope).unstrained(strain)
         answer, slope_over_pulley_rad, strain = solve(run)
@@ -142,10 +141,13 @@ def over_pulleys(
             robot, poses, level, run, slope_over_pulley_rad
         )
         step = np.where(np.isfinite(slope_over_pulley_rad), slope_over_pulley_rad, straight) - slope
-        before, gap = gap, np.fmax.reduce(np.abs(step), axis=-1, initial=0.0)
+        gap = np.fmax.reduce(np.abs(step), axis=-1, initial=0.0)
         if np.all(gap <= STILL_RAD):
             break
-        swings = (iteration >= _PATIENCE) & (gap > 0.5 * before) & (gap > SETTLED_RAD)
-        share = np.where(swings, np.maximum(0.5 * share, _LEAST_SHARE), share)
-        slope = slope + share[..., None] * step
+        if iteration >= _PATIENCE:
+            change = np.where(gap[..., None] > SETTLED_RAD, step_before - step, 0.0)
+            secant = np.divide(slope - slope_before, change, out=share, where=change != 0.0)
+            share = np.clip(secant, _LEAST_SHARE, 1.0)
+        slope_before, step_before = slope, step
+        slope = slope + share * step
     return answer, run, gap

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from designer.kernel.batch import Solution
 
 _FEW_TURNS = 5
-"""Of pulleys, before poses that have come to rest are left out."""
+"""Of pulleys, for the poses that straight cables do not bring to rest."""
 LONG = 1.5
 """Length over chord above which a cable counts as far too long."""
 _NO_LENGTH = 1e-12
@@ -96,13 +96,14 @@ def solve_task(
     checkpoint()
     flat = poses.flat
     solution, run = _solve_over_pulleys(robot, flat, task, proves_best=proves_best)
-    _judge_unsolved(robot, flat, solution, task)
+    _judge_unsolved(robot, flat, solution, task, is_taut=robot.is_redundant)
     at = np.flatnonzero(are_open(solution.verdict))
     if robot.is_square and len(at) > 0 and np.all(task.inverse_weight_m_per_N != 0.0):
         # Most are proved to be impossible before the solver of taut cables need be compiled.
         some, part = flat.part(at), task.part(at)
         again, its_run = _solve_over_pulleys(robot, some, part, decides=True)
-        _judge_unsolved(robot, some, again, part)
+        in_plane = robot.cable_load_direction is None
+        _judge_unsolved(robot, some, again, part, is_taut=in_plane)
         _replace(solution, run, at, again, its_run)
     if robot.pulley_radius_m == 0.0:
         return solution, run
@@ -112,14 +113,13 @@ def solve_task(
 
 
 def _solve_over_pulleys(
-    robot: Robot, flat: Poses, task: Task, turns: int = _FEW_TURNS, **wishes: bool
+    robot: Robot, flat: Poses, task: Task, turns: int = 1, **wishes: bool
 ) -> tuple[Solution, PulleyRun]:
-    """Solve with a few turns, and those poses that have not come to rest again with more."""
+    """Solve with one turn, and those poses that have not come to rest again with more."""
     from designer.kernel.batch import solve_batch
 
     ones = np.ones(robot.n_cables)
-    stays_in_plane = robot.pulley_radius_m > 0.0 and robot.cable_load_direction is None
-    pulleys_m = upright_exit_points_m(robot) if stays_in_plane else None
+    pulleys_m = upright_exit_points_m(robot) if robot.pulley_radius_m > 0.0 else None
 
     def solve(run: PulleyRun) -> tuple[Solution, FloatArray, float]:
         solution = solve_batch(
@@ -169,10 +169,13 @@ def _replace(
         run.exit_points_m[at], run.wrap_m[at] = its_run.exit_points_m, its_run.wrap_m
 
 
-def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -> None:
+def _judge_unsolved(
+    robot: Robot, flat: Poses, solution: Solution, task: Task, *, is_taut: bool
+) -> None:
     """Say of poses without a solution what is proved of any cables, straight or sagging.
 
-    What the solver has proved of taut ones stands unless that is more.
+    What the solver has proved stands unless that is more; over pulleys, where they are near or
+    cables bow out, only that of taut cables does.
     """
     from designer.kernel.batch import refuse_batch
 
@@ -186,6 +189,7 @@ def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -
     bows_out, level = False, level_geometry(robot, poses)
     chord_m = np.hypot(level.horizontal_distance_m, level.drop_m)
     has_no_length = chord_m.min(axis=1) <= _NO_LENGTH * chord_m.max(axis=1)
+    has_no_length |= np.isnan(points).any(axis=(-2, -1))
     if robot.pulley_radius_m > 0.0:  # the cone bounds a cable only beyond its pulley
         is_near |= (level.horizontal_distance_m < 2.0 * robot.pulley_radius_m).any(axis=1)
         bows_out = robot.cable_load_direction is not None
@@ -193,10 +197,10 @@ def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -
             situation, least_N = _between_tangents(robot, level, situation), 0.0
     verdict, wrench, _ = refuse_batch(situation, least_N if robot.is_redundant else 0.0)
     of_solver = solution.verdict[unsolved]
-    says_more = ~np.isin(verdict, (Verdict.OUTSIDE_HULL, Verdict.RANK_DEFICIENT))
-    says_more &= (of_solver != Verdict.NOT_CONVERGED) & (not bows_out)
-    verdict = np.where(says_more, of_solver, verdict)
     verdict[is_near] = Verdict.NOT_CONVERGED
+    says_more = ~np.isin(verdict, (Verdict.OUTSIDE_HULL, Verdict.RANK_DEFICIENT))
+    says_more &= (of_solver != Verdict.NOT_CONVERGED) & (is_taut | ~(is_near | bows_out))
+    verdict = np.where(says_more, of_solver, verdict)
     verdict[has_no_length] = Verdict.NO_LENGTH
     solution.verdict[unsolved] = verdict
     solution.wrench[unsolved] = np.where(

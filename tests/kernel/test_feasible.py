@@ -15,15 +15,26 @@ from twins.certificates import figures_of, refused
 from twins.thinnest import least_utilisation, thinnest
 
 from designer.arrays import frozen_array
-from designer.kernel.feasible import ABOVE, BELOW, REST, SLOPE, _enclose, new_parts, set_ranges
+from designer.kernel.calling import plain
+from designer.kernel.feasible import (
+    ABOVE,
+    BELOW,
+    REST,
+    SLOPE,
+    _enclose,
+    _hang,
+    new_parts,
+    set_ranges,
+)
 from designer.kernel.pose import asked, limit_sag, new_pose, place
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
 from designer.physics import catenary
 from designer.proof.enclosure.cable import enclose
 from designer.sizing.newton import size_poses
-from designer.statics.geometry import cable_geometry
+from designer.statics.geometry import cable_geometry, upright_exit_points_m
 from designer.statics.inverse import solve_sagging
+from designer.statics.pulleys import straight_run
 from designer.statics.task import situation_at
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
@@ -75,6 +86,49 @@ def test_bodies_enclose_what_the_cable_does(diameter_m: float) -> None:
                 rounding = 1e-12 * np.abs(v).max()
                 assert beside[:, 0].min() > lines[k, BELOW, i] - rounding
                 assert beside[:, 1].max() < lines[k, ABOVE, i] + rounding
+
+
+@numba.njit(error_model="numpy")
+def _beyond_bodies(situation, figures, inverse_weight):
+    """Return how far the curves of cables over pulleys are outside of their bodies, over these."""
+    pose = new_pose(situation, figures)
+    n, worst = situation.attachments.shape[0], -np.inf
+    parts, _ = new_parts(situation.rows.size, n, 3)
+    for at in range(situation.positions.shape[0]):
+        place(pose, situation, figures, at)
+        limit_sag(pose)
+        set_ranges(pose, parts, asked(pose, inverse_weight), False)
+        for i in range(n):
+            low, high = parts.ranges[0, 0, i], parts.ranges[0, 1, i]
+            high = low * (high / low) ** (1e-3 ** ((at % 4) / 3.0))
+            _enclose(pose, parts, i, low, high)
+            for share in np.linspace(0.0, 1.0, 200):
+                p = low + share * (high - low) if at % 2 else low * (high / low) ** share
+                _, lift, _, _, _, _, _, along, aside = _hang(pose, i, p)
+                curves = lift, along, aside
+                for q in range(3):
+                    rows = parts.lines[2 + 4 * q : 6 + 4 * q, i]
+                    beside = curves[q] - rows[0] - rows[1] * p
+                    size = rows[3] - rows[2] + 1e-9 * (abs(curves[q]) + p)
+                    worst = max(worst, (beside - rows[3]) / size, (rows[2] - beside) / size)
+    return worst
+
+
+@pytest.mark.slow
+def test_bodies_enclose_what_a_cable_over_a_pulley_does() -> None:
+    """In wind, where the force along and across the chord has bodies of its own."""
+    leaning = replace(COGIRO, cable_load_direction=frozen_array([0.3, 0.2, -1.0]))
+    slack = replace(FOUR, sag_max=0.5)
+    for without, poses in ((leaning, anywhere(40, 3)), (slack, four_poses(40))):
+        robot = replace(without, pulley_radius_m=0.5)
+        figures, inverse = figures_of(robot, steel(3.0))
+        figures = figures._replace(
+            pulleys=plain(upright_exit_points_m(robot)),
+            pulley_radius=robot.pulley_radius_m,
+            vertical=plain(robot.leaning[:, 2]),
+        )
+        situation = situation_at(robot, poses).starting_at(straight_run(robot, poses).exit_points_m)
+        assert _beyond_bodies(situation, figures, inverse) < 1e-3
 
 
 @pytest.mark.slow
