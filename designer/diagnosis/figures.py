@@ -13,7 +13,7 @@ from designer.diagnosis import words
 from designer.diagnosis.problem import channel_names
 from designer.diagnosis.result import Diagnosis
 from designer.diagnosis.structure import strongest_channel
-from designer.diagnosis.words import Quantity, quantities
+from designer.diagnosis.words import ReadingKind, quantities
 from designer.report import format as fmt
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
@@ -207,7 +207,7 @@ def errors_chart(diagnosis: Diagnosis) -> str:
         return canvas.svg(figure, "diagnosis-errors", title)
 
 
-def _error_panel(axes: Axes, diagnosis: Diagnosis, kind: Quantity) -> None:
+def _error_panel(axes: Axes, diagnosis: Diagnosis, kind: ReadingKind) -> None:
     levels = [kind.noise]
     for row, stage in enumerate(diagnosis.stages):
         error = kind.error_of(stage)

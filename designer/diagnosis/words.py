@@ -228,7 +228,7 @@ def _short(value: float) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class ReadingKind:
     """A kind of reading: ``length`` or ``tension``, its unit in the report, the scale from SI.
 
     ``noise`` is the standard deviation of one reading in SI units.
@@ -277,13 +277,13 @@ class Quantity:
         return fmt.number(ratio, 2 if ratio < 10.0 else 3)
 
 
-def kinds(noise: Noise) -> tuple[Quantity, Quantity]:
+def kinds(noise: Noise) -> tuple[ReadingKind, ReadingKind]:
     """Return lengths and tensions, measured or not."""
-    length, tension = (Quantity(x.name, x.unit, x.scale, x.of(noise)) for x in KINDS)
+    length, tension = (ReadingKind(x.name, x.unit, x.scale, x.of(noise)) for x in KINDS)
     return length, tension
 
 
-def quantities(diagnosis: Diagnosis) -> Iterator[tuple[Quantity, Error, Error]]:
+def quantities(diagnosis: Diagnosis) -> Iterator[tuple[ReadingKind, Error, Error]]:
     """Yield each kind that was measured, with its error before and after."""
     of_name = {quantity.name: quantity for quantity in kinds(diagnosis.noise)}
     return ((of_name[kind.name], before, after) for kind, before, after in diagnosis.errors)

@@ -14,7 +14,7 @@ from designer.documents.bounds import BOUNDS, Bound
 from designer.documents.opened import open_input, reason
 from designer.documents.table import cells_of
 from designer.errors import Fault, InputError
-from designer.model.cable import Offer, PriceList
+from designer.model.cable import PriceList, RopePrice
 from designer.spelling import did_you_mean
 from designer.units import LENGTH, QuantityError, read_quantity
 
@@ -110,7 +110,7 @@ class _Reading:
     faults: list[Fault] = field(default_factory=list)
     lines: dict[tuple[str, str], int] = field(default_factory=dict)
 
-    def offer(self, line: int, cells: list[str]) -> Offer | None:
+    def offer(self, line: int, cells: list[str]) -> RopePrice | None:
         """Return the offer of a row; None with a fault where it is none."""
         refuse = partial(Fault, self.file, line)
         if len(cells) != len(self.names):
@@ -129,7 +129,7 @@ class _Reading:
             self.faults.append(refuse("size", problem, "one row for each size"))
         return offer
 
-    def _read(self, line: int, texts: Mapping[str, str]) -> Offer:
+    def _read(self, line: int, texts: Mapping[str, str]) -> RopePrice:
         for name, text in texts.items():
             if not text:
                 raise _FlawError(name, "holds nothing", "a value in each row")
@@ -151,7 +151,7 @@ class _Reading:
                 scale = read_quantity(f"1 {match[1]}", LENGTH)
                 diameter_m = scale * _number(name, text, BOUNDS["rope diameter"], scale)
         price = _number("price_per_m", texts["price_per_m"], BOUNDS["price"])
-        return Offer(texts["grade"], size_id, diameter_m, price, date_text, line)
+        return RopePrice(texts["grade"], size_id, diameter_m, price, date_text, line)
 
 
 def _is_date(text: str) -> bool:

@@ -276,7 +276,7 @@ _SAME_DIAMETER = 2e-3
 
 
 @dataclass(frozen=True, slots=True)
-class Offer:
+class RopePrice:
     """The price of a metre of one size, of a date such as ``2026-03`` or ``2026-03-31``.
 
     The size is named by its id, or by its diameter [m] where ``size_id`` is empty. ``line`` is
@@ -308,7 +308,7 @@ class PriceList:
 
     path: Path
     currency: str
-    offers: tuple[Offer, ...]
+    offers: tuple[RopePrice, ...]
 
     @property
     def name(self) -> str:
@@ -321,6 +321,6 @@ class PriceList:
         dates = [offer.date for offer in self.offers]
         return min(dates), max(dates)
 
-    def offers_of(self, grade: str) -> tuple[Offer, ...]:
+    def offers_of(self, grade: str) -> tuple[RopePrice, ...]:
         """Return the offers of one grade."""
         return tuple(offer for offer in self.offers if offer.grade == grade)

@@ -22,7 +22,7 @@ import numpy as np
 from designer import checked
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade, Size
-from designer.model.cable import Cable, Offer, SizeUnits
+from designer.model.cable import Cable, RopePrice, SizeUnits
 from designer.model.load_case import STATIC
 from designer.model.verdict import Requirement
 from designer.selection.cases import CaseResult, governing
@@ -293,7 +293,7 @@ def with_prices(
 
 
 @lru_cache(maxsize=2**14)  # the same sizes whenever asked: candidates are told apart by them
-def _listed(grade: Grade, currency: str, offers: tuple[Offer, ...]) -> Grade:
+def _listed(grade: Grade, currency: str, offers: tuple[RopePrice, ...]) -> Grade:
     is_comparable = grade.currency == currency
     if not offers and (is_comparable or grade.currency is None):
         return grade

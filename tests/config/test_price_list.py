@@ -13,7 +13,7 @@ from designer.errors import InputError
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.io.config.moved import moved_to
-from designer.model.cable import Offer, PriceList
+from designer.model.cable import PriceList, RopePrice
 
 GRADE = "unirope-6x36-iwrc-1960"
 HEAD = "grade,size,price_per_m,currency,date\n"
@@ -51,7 +51,7 @@ def test_a_table_with_semicolons_decimal_commas_and_diameters_is_read(tmp_path: 
 
 
 def test_a_size_is_named_as_its_table_names_it() -> None:
-    offer = Offer("a", "1/4 IN", 0.0, 1.0, "2026", 2)
+    offer = RopePrice("a", "1/4 IN", 0.0, 1.0, "2026", 2)
     assert offer.is_for("1/4 in", 1.0)
     assert not offer.is_for("5/16 in", 1.0)
 

@@ -19,7 +19,7 @@ from ropes import rope
 from designer.analysis.result_json import selection_dict
 from designer.arrays import frozen_array
 from designer.grades.grade import Grade, Units
-from designer.model.cable import Cable, Offer, Preference, PriceList
+from designer.model.cable import Cable, Preference, PriceList, RopePrice
 from designer.model.region import PointList, Prism
 from designer.model.workspace import Workspace
 from designer.selection.candidate import (
@@ -329,14 +329,15 @@ def test_the_cheapest_is_chosen_and_said_to_be_estimated(fast_robot) -> None:
     assert (by_mass.chosen.grade.id, by_mass.price_estimate) == ("steel", None)
 
 
-def listed(*offers: Offer) -> Selection:
+def listed(*offers: RopePrice) -> Selection:
     prices = PriceList(Path("prices.csv"), "EUR", offers)
     return replace(BY_COST, price_list=prices)
 
 
 def test_a_list_comes_before_grades_and_estimates() -> None:
     by_list = listed(
-        Offer("dollars", "10 mm", 0.0, 7.0, "2026", 2), Offer("euros", "", 0.06, 9.0, "2026", 3)
+        RopePrice("dollars", "10 mm", 0.0, 7.0, "2026", 2),
+        RopePrice("euros", "", 0.06, 9.0, "2026", 3),
     )
     priced = [
         rope(name, PRICED_SIZES, material="steel", price_per_kg=3.0, currency=currency)
@@ -358,9 +359,9 @@ def test_the_least_by_the_list_is_chosen(fast_robot) -> None:
     workspace = Workspace(Prism.over(triangle, 60.0, (-200.0, -80.0)), samples=100)
     grades = [rope(name, [30.0, 34.0], material="steel") for name in ("first", "second")]
     by_list = listed(
-        Offer("first", "30 mm", 0.0, 8.0, "2026", 2),
-        Offer("first", "34 mm", 0.0, 6.0, "2026", 3),
-        Offer("second", "34 mm", 0.0, 7.0, "2026", 4),
+        RopePrice("first", "30 mm", 0.0, 8.0, "2026", 2),
+        RopePrice("first", "34 mm", 0.0, 6.0, "2026", 3),
+        RopePrice("second", "34 mm", 0.0, 7.0, "2026", 4),
     )
     found = select(fast_robot, workspace, by_list, grades)
     assert found.chosen is not None

@@ -39,7 +39,7 @@ from designer.units import describe
 
 
 @dataclass(frozen=True, slots=True)
-class Parts:
+class StudyParts:
     """A document whose parts can be had one by one, whatever is wrong with the others.
 
     ``effects`` are those that there are, by their ids. A path is written as in messages, such as
@@ -143,7 +143,7 @@ _SESSIONS = "measurements.sessions"
 
 def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]:
     """Return every fault that concerns more than one field of the document, or the effects."""
-    parts = Parts(document, document.root.data(), effects)
+    parts = StudyParts(document, document.root.data(), effects)
     checks = (
         distinct_cables,
         anchors_span_area,
@@ -179,7 +179,7 @@ def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]
     return [fault for check in checks for fault in check(parts)]
 
 
-def distinct_cables(parts: Parts) -> Iterator[Fault]:
+def distinct_cables(parts: StudyParts) -> Iterator[Fault]:
     """No two cables have both of their ends in common."""
     anchors, attachments = parts.array(_ANCHORS), parts.array(_ATTACHMENTS)
     if anchors is None or (attachments is not None and len(attachments) != len(anchors)):
@@ -198,7 +198,7 @@ def distinct_cables(parts: Parts) -> Iterator[Fault]:
             return
 
 
-def anchors_span_area(parts: Parts) -> Iterator[Fault]:
+def anchors_span_area(parts: StudyParts) -> Iterator[Fault]:
     """Seen from above, the exit points are not on one line, except in a plane."""
     anchors = parts.array(_ANCHORS)
     if anchors is None or parts.is_planar or any(distinct_cables(parts)):
@@ -208,7 +208,7 @@ def anchors_span_area(parts: Parts) -> Iterator[Fault]:
         yield parts.fault(_ANCHORS, problem, "anchors that span an area in x and y")
 
 
-def moved_anchors_span_area(parts: Parts) -> Iterator[Fault]:
+def moved_anchors_span_area(parts: StudyParts) -> Iterator[Fault]:
     """The exit points are not on one line either where the effects say that they are."""
     anchors = parts.array(_ANCHORS)
     if anchors is None or parts.is_planar or any(anchors_span_area(parts)):
@@ -224,7 +224,7 @@ def moved_anchors_span_area(parts: Parts) -> Iterator[Fault]:
         yield parts.fault("effects.anchor_offset", problem, expected)
 
 
-def attachments_fit(parts: Parts) -> Iterator[Fault]:
+def attachments_fit(parts: StudyParts) -> Iterator[Fault]:
     """Each cable has its attachment, and the platform cannot turn freely about all of them."""
     anchors, attachments = parts.read(_ANCHORS), parts.array(_ATTACHMENTS)
     if attachments is None:
@@ -239,7 +239,7 @@ def attachments_fit(parts: Parts) -> Iterator[Fault]:
         yield parts.fault(_ATTACHMENTS, problem, "attachments apart, or none for a point mass")
 
 
-def least_tension_is_a_choice(parts: Parts) -> Iterator[Fault]:
+def least_tension_is_a_choice(parts: StudyParts) -> Iterator[Fault]:
     """Only spare cables leave tensions to choose."""
     anchors, least_N = parts.read(_ANCHORS), parts.read("robot.tension_min")
     if not anchors or not least_N:
@@ -254,7 +254,7 @@ def least_tension_is_a_choice(parts: Parts) -> Iterator[Fault]:
         yield parts.fault("robot.tension_min", problem, expected)
 
 
-def point_mass_has_no_body(parts: Parts) -> Iterator[Fault]:
+def point_mass_has_no_body(parts: StudyParts) -> Iterator[Fault]:
     """A point mass has no body, takes no moment and has no orientations."""
     if not parts.is_point_mass:
         return
@@ -282,7 +282,7 @@ def point_mass_has_no_body(parts: Parts) -> Iterator[Fault]:
             yield parts.fault("load_cases", problem, _NO_POINT_MASS, index, kind)
 
 
-def load_is_not_cancelled(parts: Parts) -> Iterator[Fault]:
+def load_is_not_cancelled(parts: StudyParts) -> Iterator[Fault]:
     """The wrench, with what the effects add, leaves a load: without one there is no diameter."""
     force, mass_kg = parts.array("robot.platform.wrench.force"), parts.read("robot.platform.mass")
     if force is None or mass_kg is None:
@@ -306,7 +306,7 @@ def load_is_not_cancelled(parts: Parts) -> Iterator[Fault]:
         yield parts.fault("robot.platform.wrench.force", problem, "a load that is left")
 
 
-def strain_stays_small(parts: Parts) -> Iterator[Fault]:
+def strain_stays_small(parts: StudyParts) -> Iterator[Fault]:
     """The allowable stress is well below the modulus; else one of them is in another unit."""
     stress_Pa, modulus_Pa = map(parts.read, ("cable.allowable_stress", "cable.youngs_modulus"))
     if stress_Pa is None or modulus_Pa is None or stress_Pa <= _LARGEST_STRAIN * modulus_Pa:
@@ -316,7 +316,7 @@ def strain_stays_small(parts: Parts) -> Iterator[Fault]:
     yield parts.fault("cable.allowable_stress", problem, expected)
 
 
-def robot_has_a_size(parts: Parts) -> Iterator[Fault]:
+def robot_has_a_size(parts: StudyParts) -> Iterator[Fault]:
     """Exit points lie within some kilometres, and what belongs to the platform between them."""
     anchors, hull = parts.array(_ANCHORS), parts.array("robot.platform.hull")
     if anchors is not None and float(np.ptp(anchors, axis=0).max()) > LARGEST.most:
@@ -336,14 +336,14 @@ def robot_has_a_size(parts: Parts) -> Iterator[Fault]:
             yield parts.fault(f"robot.platform.{name}", problem, AT_MOST)
 
 
-def enough_anchors(parts: Parts) -> Iterator[Fault]:
+def enough_anchors(parts: StudyParts) -> Iterator[Fault]:
     """Only in a plane two cables can hold anything."""
     anchors = parts.read(_ANCHORS)
     if anchors is not None and len(anchors) < 3 and not parts.is_planar:
         yield parts.fault(_ANCHORS, "the list has 2 values", "at least 3 points, or planar: true")
 
 
-def lies_in_plane(parts: Parts) -> Iterator[Fault]:
+def lies_in_plane(parts: StudyParts) -> Iterator[Fault]:
     """Everything of a planar robot lies in the vertical plane of its anchors."""
     anchors = parts.array(_ANCHORS)
     if anchors is None or not parts.is_planar:
@@ -367,7 +367,9 @@ def lies_in_plane(parts: Parts) -> Iterator[Fault]:
             yield parts.fault(path, "turns the platform out of the plane", "a turn in the plane")
 
 
-def _vectors(parts: Parts, origin: FloatArray, size: float) -> Iterator[tuple[str, FloatArray]]:
+def _vectors(
+    parts: StudyParts, origin: FloatArray, size: float
+) -> Iterator[tuple[str, FloatArray]]:
     """Yield where vectors stand, and the vectors (n, 3), positions from a point of the plane."""
     for path in ("robot.platform.centre_of_mass", _ATTACHMENTS):
         values = parts.array(path)
@@ -395,7 +397,7 @@ def _vectors(parts: Parts, origin: FloatArray, size: float) -> Iterator[tuple[st
                 yield "load_cases", along[None] * size / np.linalg.norm(along)
 
 
-def _rotation_axes(parts: Parts) -> Iterator[tuple[str, FloatArray]]:
+def _rotation_axes(parts: StudyParts) -> Iterator[tuple[str, FloatArray]]:
     """Yield where turns and moments stand, and their axes (n, 3)."""
     pose = parts.read("pose")
     if pose is not None:
@@ -423,7 +425,7 @@ def rank(points: FloatArray) -> int:
     return int(np.sum(spread > _FLAT * max(spread[0], np.finfo(float).tiny)))
 
 
-def winches_fit(parts: Parts) -> Iterator[Fault]:
+def winches_fit(parts: StudyParts) -> Iterator[Fault]:
     """Each cable has a winch, apart from its exit point; with pulleys it comes from below."""
     anchors, positions = parts.array(_ANCHORS), parts.array(_WINCHES)
     if anchors is None or positions is None:
@@ -442,7 +444,7 @@ def winches_fit(parts: Parts) -> Iterator[Fault]:
         yield parts.fault(_WINCHES, problem, expected, int(index))
 
 
-def lists_by_cable_fit(parts: Parts) -> Iterator[Fault]:
+def lists_by_cable_fit(parts: StudyParts) -> Iterator[Fault]:
     """A list by cable has an entry for each of them."""
     anchors = parts.array(_ANCHORS)
     for path, noun, absent in (
@@ -456,7 +458,7 @@ def lists_by_cable_fit(parts: Parts) -> Iterator[Fault]:
             yield parts.fault(path, problem, expected)
 
 
-def prism_has_area(parts: Parts) -> Iterator[Fault]:
+def prism_has_area(parts: StudyParts) -> Iterator[Fault]:
     """Something is left of the prism's base inside the inset."""
     path, base = f"{_REGION}.prism", parts.read(f"{_REGION}.prism")
     corners = parts.array("robot.anchors" if base == "anchors" else path)
@@ -474,7 +476,7 @@ def prism_has_area(parts: Parts) -> Iterator[Fault]:
         yield parts.fault(f"{_REGION}.inset", problem, "a smaller inset")
 
 
-def rectangle_has_area(parts: Parts) -> Iterator[Fault]:
+def rectangle_has_area(parts: StudyParts) -> Iterator[Fault]:
     """Something is left of the rectangle's width inside the inset."""
     path, base = f"{_REGION}.rectangle", parts.read(f"{_REGION}.rectangle")
     ends = parts.array("robot.anchors") if base == "anchors" else base
@@ -489,7 +491,7 @@ def rectangle_has_area(parts: Parts) -> Iterator[Fault]:
         yield parts.fault(path, str(error), "a line that leaves something between its ends")
 
 
-def places_are_near(parts: Parts) -> Iterator[Fault]:
+def places_are_near(parts: StudyParts) -> Iterator[Fault]:
     """The platform is asked to be where the cables can reach."""
     anchors = parts.array("robot.anchors")
     if anchors is None:
@@ -503,7 +505,7 @@ def places_are_near(parts: Parts) -> Iterator[Fault]:
             yield parts.fault(path, problem, AT_MOST)
 
 
-def _places(parts: Parts, middle: FloatArray) -> Iterator[tuple[str, FloatArray]]:
+def _places(parts: StudyParts, middle: FloatArray) -> Iterator[tuple[str, FloatArray]]:
     """Yield where positions stand, and the positions (n, 3), or (n, 2) without a height [m]."""
     pose, box, z_m = parts.read("pose"), *(parts.array(f"{_REGION}.{n}") for n in ("box", "z"))
     if pose is not None:
@@ -518,7 +520,7 @@ def _places(parts: Parts, middle: FloatArray) -> Iterator[tuple[str, FloatArray]
         yield f"{_REGION}.z", np.array([[*middle[:2], height_m] for height_m in z_m])
 
 
-def catalogues_exist(parts: Parts) -> Iterator[Fault]:
+def catalogues_exist(parts: StudyParts) -> Iterator[Fault]:
     """Each extra catalogue is a file or folder beside the config."""
     folder = Path(parts.document.name).parent
     for index, name in _texts(parts.raw("catalogues")):
@@ -529,7 +531,7 @@ def catalogues_exist(parts: Parts) -> Iterator[Fault]:
         yield parts.fault("catalogues", f"there is no {describe(name)}", expected, index)
 
 
-def each_cable_in_one_group(parts: Parts) -> Iterator[Fault]:
+def each_cable_in_one_group(parts: StudyParts) -> Iterator[Fault]:
     """No cable is in two groups, none is left over, and none is named that is not there."""
     groups, anchors = parts.read(_GROUPS), parts.read("robot.anchors")
     if not groups or not anchors:
@@ -620,7 +622,7 @@ _EXCLUDES = (
 """Fields beside which groups of cables may not be."""
 
 
-def fields_go_together(parts: Parts) -> Iterator[Fault]:
+def fields_go_together(parts: StudyParts) -> Iterator[Fault]:
     """What each field needs is there, and what excludes another is there alone."""
     paths = {path for path, *_ in (*_NEEDS, *_EXCLUDES) if parts.raw(path) not in (None, [])}
     for path, needed, problem, expected in _NEEDS:
@@ -639,7 +641,7 @@ def fields_go_together(parts: Parts) -> Iterator[Fault]:
         yield parts.fault(_GROUPS, problem, "one robot.attached for all cables, or no groups")
 
 
-def path_stands_alone(parts: Parts) -> Iterator[Fault]:
+def path_stands_alone(parts: StudyParts) -> Iterator[Fault]:
     """A path is beside nothing that is not computed in motion."""
     if parts.raw(_PATH) is None:
         return
@@ -668,7 +670,7 @@ _CASES_NOT_IN_MOTION = {
 }
 
 
-def regions_fit_the_plane(parts: Parts) -> Iterator[Fault]:
+def regions_fit_the_plane(parts: StudyParts) -> Iterator[Fault]:
     """A planar robot has flat regions."""
     if not parts.is_planar:
         return
@@ -683,7 +685,7 @@ def regions_fit_the_plane(parts: Parts) -> Iterator[Fault]:
             yield parts.fault(_CASES, problem, expected, index, "region")
 
 
-def _load_cases(parts: Parts) -> Iterator[tuple[int, dict[str, Data]]]:
+def _load_cases(parts: StudyParts) -> Iterator[tuple[int, dict[str, Data]]]:
     """Yield the load cases that are mappings, each with its place."""
     cases = parts.raw(_CASES)
     for index, case in enumerate(cases if isinstance(cases, list) else ()):
@@ -691,7 +693,7 @@ def _load_cases(parts: Parts) -> Iterator[tuple[int, dict[str, Data]]]:
             yield index, case
 
 
-def load_cases_fit(parts: Parts) -> Iterator[Fault]:
+def load_cases_fit(parts: StudyParts) -> Iterator[Fault]:
     """Load cases have names of their own, cables that exist, and what their wind acts on."""
     first_use: dict[str, int] = {}
     for index, case in _load_cases(parts):
@@ -717,7 +719,7 @@ def load_cases_fit(parts: Parts) -> Iterator[Fault]:
                 yield parts.fault(_CASES, problem, expected, index, "wind")
 
 
-def _why_no_wind(parts: Parts) -> Iterator[tuple[str, str]]:
+def _why_no_wind(parts: StudyParts) -> Iterator[tuple[str, str]]:
     """Yield what the wind of a load case lacks, and what is expected."""
     if parts.raw("robot.platform.drag") is None:
         expected = "robot.platform.drag: {area: …, coefficient: …}"
@@ -734,7 +736,7 @@ def _why_no_wind(parts: Parts) -> Iterator[tuple[str, str]]:
 _FREQUENCY = "selection.limits.platform_frequency"
 
 
-def inertia_is_known(parts: Parts) -> Iterator[Fault]:
+def inertia_is_known(parts: StudyParts) -> Iterator[Fault]:
     """The inertia of a body is known in every load case where its frequencies have a limit."""
     cases = [*_load_cases(parts)]
     if parts.is_point_mass:
@@ -755,7 +757,7 @@ def inertia_is_known(parts: Parts) -> Iterator[Fault]:
             yield parts.fault(_CASES, problem, "inertia beside it", index, "mass")
 
 
-def effects_are_known(parts: Parts) -> Iterator[Fault]:
+def effects_are_known(parts: StudyParts) -> Iterator[Fault]:
     """Each effect has an id, parameters and a cable that there are, and leaves a platform."""
     declared, mass_kg = parts.declared, parts.read("robot.platform.mass")
     for flaw in declared.flaws:
@@ -768,7 +770,7 @@ def effects_are_known(parts: Parts) -> Iterator[Fault]:
             yield parts.document.fault((*place, "offset_kg"), "leaves no mass", expected)
 
 
-def columns_fit_the_robot(parts: Parts) -> Iterator[Fault]:
+def columns_fit_the_robot(parts: StudyParts) -> Iterator[Fault]:
     """Each column goes to a place of its own that the robot has, and a point mass to no turn."""
     first_use: dict[str, str] = {}
     columns, has_files = parts.raw(_COLUMNS), isinstance(parts.raw("measurements.file"), list)
@@ -790,12 +792,12 @@ def columns_fit_the_robot(parts: Parts) -> Iterator[Fault]:
         first_use.setdefault(target, name)
 
 
-def unknowns_are_known(parts: Parts) -> Iterator[Fault]:
+def unknowns_are_known(parts: StudyParts) -> Iterator[Fault]:
     """What is fitted from the start is an effect, or all exit points together; each once."""
     yield from _unknown_names(parts, parts.raw(_UNKNOWN), _UNKNOWN)
 
 
-def _unknown_names(parts: Parts, names: Data, path: str, *below: Key) -> Iterator[Fault]:
+def _unknown_names(parts: StudyParts, names: Data, path: str, *below: Key) -> Iterator[Fault]:
     """Yield what is wrong with a list of unknowns at a path, or below it."""
     seen: set[str] = set()
     together = [effect.also_called for effect in parts.effects.values() if effect.also_called]
@@ -814,7 +816,7 @@ def _unknown_names(parts: Parts, names: Data, path: str, *below: Key) -> Iterato
         seen.add(name)
 
 
-def data_have_a_file(parts: Parts) -> Iterator[Fault]:
+def data_have_a_file(parts: StudyParts) -> Iterator[Fault]:
     """Measurements name a file, or sessions with a file each."""
     data = parts.raw("measurements")
     if not isinstance(data, dict):
@@ -827,7 +829,7 @@ def data_have_a_file(parts: Parts) -> Iterator[Fault]:
         yield parts.fault("measurements.file", "there are sessions as well", "one of the two")
 
 
-def sessions_have_their_own(parts: Parts) -> Iterator[Fault]:
+def sessions_have_their_own(parts: StudyParts) -> Iterator[Fault]:
     """What is unknown or known of a session is known to be so, and not of the machine as well."""
     sessions = parts.raw(_SESSIONS)
     if not isinstance(sessions, list):
@@ -855,7 +857,7 @@ def sessions_have_their_own(parts: Parts) -> Iterator[Fault]:
                 yield parts.document.fault(keys, problem, "one of the two")
 
 
-def unknown_poses_are_identifiable(parts: Parts) -> Iterator[Fault]:
+def unknown_poses_are_identifiable(parts: StudyParts) -> Iterator[Fault]:
     """Where poses are unknown, attachments and the vertical are not."""
     unknown = {name: index for index, name in _texts(parts.raw(_UNKNOWN))}
     if POSES not in unknown:
@@ -881,7 +883,7 @@ def _texts(data: Data) -> Iterator[tuple[int, str]]:
             yield index, text
 
 
-def logo_is_a_picture(parts: Parts) -> Iterator[Fault]:
+def logo_is_a_picture(parts: StudyParts) -> Iterator[Fault]:
     """The logo is a file that a page can show."""
     name = parts.read(_LOGO)
     if name is None:
