@@ -42,7 +42,7 @@ def shared(diagnosis: Diagnosis) -> Context:
         "diagnosis": diagnosis,
         "quantities": list(quantities(diagnosis)),
         "groups": grouped(diagnosis.findings),
-        "drawings": Drawings(diagnosis),
+        "drawings": DiagnosisDrawings(diagnosis),
         "significance": SIGNIFICANCE,
         "most_rows": MOST_ROWS,
     }
@@ -244,7 +244,7 @@ _MAX_ON_FIRST_PAGE = 3
 """The same, in the panel of the first page."""
 
 
-class Drawings:
+class DiagnosisDrawings:
     """Figures by name; None where nothing is drawn."""
 
     def __init__(self, diagnosis: Diagnosis) -> None:

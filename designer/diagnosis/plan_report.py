@@ -16,7 +16,7 @@ from designer.report.figures import canvas, palette
 from designer.report.render import write_pages
 
 
-class Drawings:
+class PlanDrawings:
     """Figures by name."""
 
     def __init__(self, plan: Plan) -> None:
@@ -57,7 +57,7 @@ def write_plan_report(plan: Plan, cable: str, folder: Path, templates: Path | No
         "rows": rows,
         "cable": cable,
         "noise": noise,
-        "drawings": Drawings(plan),
+        "drawings": PlanDrawings(plan),
         "provenance": provenance,
     }
     report = Report.of(

@@ -67,7 +67,7 @@ Values = Mapping[str, FloatArray]  #: By the key of the quantity, SI; NaN where 
 
 
 @dataclass(frozen=True, slots=True)
-class CableState:
+class CableReadout:
     """One cable in this pose."""
 
     number: int  #: From 1, in the order of the anchors
@@ -91,7 +91,7 @@ class PoseAnswer:
     verdict: Verdict  #: What became of it, with the rope or, without one, with the thinnest cable
     #: What the cables are of; None for the thinnest cable that holds the pose
     rope: Rope | RopePerCable | None
-    cables: tuple[CableState, ...]  #: Empty unless solved
+    cables: tuple[CableReadout, ...]  #: Empty unless solved
     #: (n_cables, 81, 3) their true shape, from the exit points to the platform [m]; None unless
     #: solved
     curves_m: FloatArray | None
@@ -203,7 +203,7 @@ def pose_answer(question: Question, *, settled: bool = False) -> PoseAnswer:
     )
 
 
-def _cables(statics: Statics, utilisation: FloatArray) -> tuple[CableState, ...]:
+def _cables(statics: Statics, utilisation: FloatArray) -> tuple[CableReadout, ...]:
     figures = {
         "length_m": statics.length_m,
         "chord_m": statics.geometry().chord_m,
@@ -215,7 +215,7 @@ def _cables(statics: Statics, utilisation: FloatArray) -> tuple[CableState, ...]
         "utilisation": utilisation,
     }
     return tuple(
-        CableState(
+        CableReadout(
             number=k + 1,
             hangs_below=bool(hangs),
             **{name: float(values[k]) for name, values in figures.items()},

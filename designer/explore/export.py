@@ -13,7 +13,7 @@ import numpy as np
 from designer.documents.plain import csv_text
 from designer.errors import Fault, InputError, NothingToExportError, OutputError
 from designer.explore.answers import (
-    CableState,
+    CableReadout,
     MapAnswer,
     RopeRow,
     Ropes,
@@ -153,7 +153,7 @@ def _report(question: Question, reporter: Reporter, folder: Path) -> Written:
 
 def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Written:
     cables = map(asdict, pose_answer(question).cables)
-    tables = {"cables.csv": _csv([f.name for f in fields(CableState)], cables)}
+    tables = {"cables.csv": _csv([f.name for f in fields(CableReadout)], cables)}
     chart = map_answer(question, fine=True, quantities=_ALL)
     if chart.grids:
         columns = map_columns(chart)
