@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pairs.agreement import QUANTITIES
 
 import designer
 from designer.analysis.analyse import Analysis
@@ -63,18 +64,27 @@ OF_EVERY_STUDY = {
 """Requirements that none lacks; what to do follows from what was tried, but for stability."""
 
 
-def test_every_requirement_has_its_words_on_the_pages() -> None:
-    """What is not asked is told as not evaluated, and what fails comes with advice."""
+def ids_of(*records: str) -> set[str]:
+    """Return the ids of the requirements or criteria that the code makes."""
     package = Path(designer.__file__).parent
-    ids = {
+    return {
         argument.value.value
         for room in ("selection", "analysis")
         for path in (package / room).rglob("*.py")
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("Criterion", "Requirement")
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in records
         for argument in node.keywords
         if argument.arg == "id" and isinstance(argument.value, ast.Constant)
     }
+
+
+def test_every_criterion_is_held_against_a_second_program() -> None:
+    assert ids_of("Criterion") == set(QUANTITIES)
+
+
+def test_every_requirement_has_its_words_on_the_pages() -> None:
+    """What is not asked is told as not evaluated, and what fails comes with advice."""
+    ids = ids_of("Criterion", "Requirement")
     assert ids > OF_EVERY_STUDY
     for page, needless in (
         ("checks", OF_EVERY_STUDY),
