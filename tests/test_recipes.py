@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pairs.agreement import QUANTITIES
 
 import designer
 from designer.analysis.analyse import Analysis
@@ -24,7 +25,7 @@ from designer.plugins import find_plugins
 from designer.report.design.report import design_report
 from designer.report.figures.charts_shares import parts
 from designer.report.render import render_html
-from designer.resources import example_file
+from designer.resources import data_folder, example_file
 from designer.selection import criteria
 from designer.statics.inverse import Statics
 from designer.workspace.sweep import Census
@@ -57,6 +58,42 @@ def test_verdicts_are_listed_only_where_they_are_defined() -> None:
     assert listed == []
 
 
+OF_EVERY_STUDY = {
+    "pose", "workspace", "rope", "equilibrium", "breaking_load", "least_tension", "stability",
+}  # fmt: skip
+"""Requirements that none lacks; what to do follows from what was tried, but for stability."""
+
+
+def ids_of(*records: str) -> set[str]:
+    """Return the ids of the requirements or criteria that the code makes."""
+    package = Path(designer.__file__).parent
+    return {
+        argument.value.value
+        for room in ("selection", "analysis")
+        for path in (package / room).rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in records
+        for argument in node.keywords
+        if argument.arg == "id" and isinstance(argument.value, ast.Constant)
+    }
+
+
+def test_every_criterion_is_held_against_a_second_program() -> None:
+    assert ids_of("Criterion") == set(QUANTITIES)
+
+
+def test_every_requirement_has_its_words_on_the_pages() -> None:
+    """What is not asked is told as not evaluated, and what fails comes with advice."""
+    ids = ids_of("Criterion", "Requirement")
+    assert ids > OF_EVERY_STUDY
+    for page, needless in (
+        ("checks", OF_EVERY_STUDY),
+        ("answer_actions", OF_EVERY_STUDY - {"stability"}),
+    ):
+        text = (data_folder("reports") / "report" / f"{page}.html.j2").read_text(encoding="utf-8")
+        assert {name for name in ids - needless if f'"{name}"' not in text} == set(), page
+
+
 LARGEST_FLEET_ANGLE_DEG = 20.0
 
 
@@ -82,8 +119,8 @@ def test_a_requirement_is_asked_wherever_the_others_are(monkeypatch: pytest.Monk
             return fleet_angle_deg(statics.robot, statics.poses)
 
         yield criteria.Criterion(
-            id="fleet_angle",
-            title="Fleet angle",
+            id="plan_angle",
+            title="Angle in plan",
             formula="angle of a cable to its drum ≤ what spools evenly",
             source=f"a test; {criteria.WHERE}",
             unit="deg",
@@ -99,7 +136,7 @@ def test_a_requirement_is_asked_wherever_the_others_are(monkeypatch: pytest.Monk
     question = session.question()
     assert question is not None
     analysis = Analysis.begin(question.study, question.catalogue)
-    (fleet,) = (each for each in analysis.requirements if each.id == "fleet_angle")
+    (fleet,) = (each for each in analysis.requirements if each.id == "plan_angle")
     workspace = question.study.workspace
     assert workspace is not None
     inside = workspace.region.inside_m(np.random.default_rng(20261125), 50_000)
@@ -111,9 +148,9 @@ def test_a_requirement_is_asked_wherever_the_others_are(monkeypatch: pytest.Monk
     # No rope meets it: the answer, each file and each page follow.
     assert analysis.answer is Answer.NO
     reasons: Any = result_dict(analysis)["answer"]
-    assert "fleet_angle" in str(reasons)
+    assert "plan_angle" in str(reasons)
     html = render_html(design_report(analysis))
-    assert html.count("Fleet angle") > 1
+    assert html.count("Angle in plan") > 1
     shown = full_ropes(question)
     assert shown.answer is Answer.NO
     assert [each.words for each in shown.requirements] == [

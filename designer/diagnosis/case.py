@@ -292,11 +292,8 @@ def _robust_std(values: FloatArray) -> float:
 
 
 def may_be_of_session(effect: Effect) -> bool:
-    """Tell whether an effect may have come about between two sessions, and is looked for in one.
-
-    Those are errors of setting up, zeros of load cells, and exit points that have been moved.
-    """
-    return effect.cause == "setting_up" or effect.id in ("anchor_offset", "tension_bias")
+    """Tell whether an effect may have come about between two sessions, and is looked for in one."""
+    return effect.cause == "setting_up" or effect.between_sessions
 
 
 PERSISTS = "goes on from session to session, and their clocks do not tell how far"

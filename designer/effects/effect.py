@@ -200,6 +200,9 @@ class Effect:
     follows_rows: bool = False
     #: whether it leaves only changes of the lengths to go by, not the lengths themselves
     shifts_lengths: bool = False
+    #: whether it may come about between two sessions, so that it is looked for in each; what is of
+    #: setting up may in any case
+    between_sessions: bool = False
     #: ids of effects that are named in its place where they do about as well together
     parts: tuple[str, ...] = ()
     also_called: str = ""  #: what ``measurements.unknown`` calls it for all cables together

@@ -67,6 +67,7 @@ TENSION_BIAS = replace(
     law="measured tension plus an offset for each cable",
     parameters=(Parameter("offset_{cable}_N", FORCE, _ZERO_SIZE, is_optional=True),),
     on_readings=_shift_zeros,
+    between_sessions=True,
 )
 
 

@@ -253,6 +253,7 @@ ANCHOR_OFFSET = Effect(
     on_machine=_move_exit,
     takes_cable=True,
     reaches_design=True,
+    between_sessions=True,
     also_called=ALL_ANCHORS,
 )
 ATTACHMENT_OFFSET = replace(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +12,12 @@ from scipy.spatial.transform import Rotation
 from twins.dataset import DataSet, make
 from twins.robots import YARD3
 
+from designer.diagnosis.case import with_those_of_sessions
 from designer.diagnosis.diagnose import diagnose_study
 from designer.diagnosis.report import verdict
 from designer.diagnosis.result import Diagnosis
 from designer.diagnosis.study import diagnosed_config
+from designer.effects.pulleys import PULLEY_RADIUS
 from designer.io.config import read_study
 from designer.measured.read import read_measured
 
@@ -57,6 +60,19 @@ def write(folder: Path, days: list[DataSet], unknown: list[str]) -> Path:
 def diagnosed(path: Path) -> Diagnosis:
     study = read_study(path)
     return diagnose_study(study, read_measured(study))
+
+
+def test_an_effect_may_come_between_sessions(tmp_path: Path) -> None:
+    study = read_study(write(tmp_path, [make(YARD3, rows=4)] * 2, []))
+    assert study.measurements is not None
+    changed = replace(PULLEY_RADIUS, id="changed_pulleys", between_sessions=True)
+    tried = with_those_of_sessions([PULLEY_RADIUS, changed], study.measurements)
+    assert [effect.key for effect in tried] == [
+        "pulley_radius",
+        "changed_pulleys",
+        "changed_pulleys of session 1",
+        "changed_pulleys of session 2",
+    ]
 
 
 @pytest.mark.slow
