@@ -188,7 +188,7 @@ def _found(diagnosis: Diagnosis) -> Iterator[Row]:
         if finding.rivals or diagnosis.has_no_rivals(finding):
             yield "  or", escape(", ".join(finding.rivals) or "none in the list")
     if diagnosis.is_smooth:
-        yield "together", "may be one cause that goes smoothly with the place"
+        yield "together", "may have one cause that varies smoothly with position"
     if not diagnosis.findings:
         yield "effects", "none found"
     structure, place = diagnosis.structure_after, diagnosis.left_in

@@ -358,7 +358,7 @@ class Diagnosis(checked.Shown):
 
     @property
     def is_smooth(self) -> bool:
-        """Whether one cause that goes smoothly with the place may be behind several findings."""
+        """Whether one cause that varies smoothly with position may be behind several findings."""
         rivals = (
             set.intersection(*(set(f.rivals) for f in self.findings)) if self.findings else set()
         )

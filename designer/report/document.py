@@ -74,7 +74,7 @@ class Report:
     created_iso: str  #: the same as ISO 8601
     sections: tuple[Section, ...]  #: all sections, in order
     missing: str = ""  #: why pictures in space are left out, and what to install
-    control: Control = NO_CONTROL
+    control: Control = NO_CONTROL  #: document number, revision and who has checked it
     problems: tuple[str, ...] = ()  #: of sections and filters of plugins that are left out
     filters: Mapping[str, Callable[..., object]] | None = None  #: beside ours, for its templates
 

@@ -187,7 +187,7 @@ def test_a_long_list_is_free_between_some_of_its_poses(study_at: StudyOf) -> Non
     law = study.workspace.orientations.law
     assert isinstance(law, BestOrientations)
     assert len(law.table.positions_m) <= 256
-    assert "at 64 others" in law.words
+    assert "64 others" in law.words
     assert len(np.concatenate([*study.workspace.places()])) == 900
 
 

@@ -112,8 +112,8 @@ def test_charts_of_one_page_share_no_id() -> None:
 class TestSlice:
     def test_served(self) -> None:
         found = texts(slice_chart(maps_of("served")))
-        assert {"worst pose, 51.2 mm", "A1", "A2", "A3", "x [m]", "y [m]"} <= found
-        assert {"needed diameter [mm]", "top of the region, z = −40 m"} <= found
+        assert {"A1", "A2", "A3", "x [m]", "y [m]", "needed diameter [mm]"} <= found
+        assert "top of the region, z = −40 m\n○ worst pose, 51.2 mm" in found
         assert "beyond: a cable hangs below the platform" in found
         assert "no finite cable" not in found
 
@@ -125,7 +125,7 @@ class TestSlice:
     def test_left_out(self) -> None:
         found = texts(slice_chart(maps_of("exclude")))
         assert "left out: a cable hangs below the platform" in found
-        assert "worst pose, 40.4 mm" in found
+        assert "top of the region, z = −40 m\n○ worst pose, 40.4 mm" in found
 
     def test_nothing_to_colour(self) -> None:
         assert any("no pose can be held" in t for t in texts(slice_chart(maps_of("unheld"))))
@@ -133,11 +133,13 @@ class TestSlice:
 
     def test_points(self) -> None:
         found = texts(slice_chart(maps_of("points")))
-        assert {"all poses, seen from above", "worst pose, 46.6 mm"} <= found
+        assert "all poses, seen from above\n○ worst pose, 46.6 mm" in found
 
     def test_panels(self) -> None:
         found = texts(slice_panels(maps_of("served")))
-        assert {"worst pose, 371.0 kN", "worst pose, 3.06", "largest tension [kN]"} <= found
+        marks = {text.partition("○ ")[2] for text in found}
+        assert {"worst pose, 371.0 kN", "worst pose, 3.06"} <= marks
+        assert "largest tension [kN]" in found
 
     def test_neighbours_share_a_name(self) -> None:
         assert {"A1, A2", "A3, A4", "A5, A6"} <= texts(slice_chart(maps_of("six")))
