@@ -58,7 +58,9 @@ def test_a_worst_pose_that_the_samples_missed_is_caught(monkeypatch: pytest.Monk
     assert study.selection is not None
     grades = _grades()
     honest = select(study.robot, study.workspace, study.selection, grades)
-    monkeypatch.setattr(choosing, "refine_governing", lambda candidates: list(map(blind, candidates)))
+    monkeypatch.setattr(
+        choosing, "refine_governing", lambda candidates: list(map(blind, candidates))
+    )
     caught = select(
         study.robot, study.workspace, study.selection, grades, proof_s=study.workspace.proof_s
     )

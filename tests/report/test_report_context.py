@@ -89,7 +89,9 @@ def test_no_raw_number_reaches_the_page(reports: dict[str, Report]) -> None:
 def test_every_field_is_documented(kind: type) -> None:
     source = inspect.getsource(kind)
     for field in dataclasses.fields(kind):
-        documented = rf"#: [^\n]+\n    {field.name}:|\n    {field.name}:[^\n]*#: |\n    {field.name} :"
+        documented = (
+            rf"#: [^\n]+\n    {field.name}:|\n    {field.name}:[^\n]*#: |\n    {field.name} :"
+        )
         assert re.search(documented, source), field.name
 
 
