@@ -168,6 +168,11 @@ def compare(
                 outcomes.append((verdict.label, ""))
                 continue
             exits = _exit_points_m(case.robot, statics, k)
+            if exits is not None and not np.isfinite(exits).all():  # an attachment in its pulley
+                is_open = verdict in OPEN
+                outcome = f"open {verdict.label}" if is_open else f"{verdict.label}, no exit point"
+                outcomes.append((outcome, about if is_open else ""))
+                continue
             place = case.robot, case.position[k], case.turn[k], case.material
             if is_sizing:
                 other = thinnest(*place, rng, starts, exits).diameter_m
