@@ -27,7 +27,7 @@ FACES = (
 """Family, weight and style as style sheets name them, and the file."""
 
 _COMMON = frozenset(
-    "⁰¹²³⁴⁵⁶⁷⁸⁹⁻₀₁₂₃₄₅₆₇₈₉–—…−√∞≈≤≥→•◦▪▸▾\u202f"
+    "⁰¹²³⁴⁵⁶⁷⁸⁹⁻₀₁₂₃₄₅₆₇₈₉–—…−√∞≈≤≥→○•◦▪▸▾\u202f"
     + "".join(map(chr, [*range(0x20, 0x7F), *range(0xA0, 0x100), *range(0x391, 0x3CA)]))
 )
 """Letters of most pages, in every font, so that it is made once for all pages on a machine."""
