@@ -132,6 +132,7 @@ def test_plots_are_axes_and_scenes(analysis: designer.Analysis) -> None:
             plotter.close()
 
 
+@pytest.mark.slow
 def test_commands_in_python(analysis: designer.Analysis, tmp_path: Path) -> None:
     lengths = designer.lengths(analysis, [[25.0, 14.0, 6.0], [20.0, 10.0, 3.0]])
     back = designer.find_poses(analysis, lengths.statics.length_m)
@@ -199,6 +200,7 @@ except designer.InputError as error:
 """
 
 
+@pytest.mark.slow
 def test_a_script_of_a_user_is_typed(tmp_path: Path) -> None:
     (tmp_path / "script.py").write_text(SCRIPT)
     (tmp_path / "mypy.ini").write_text(

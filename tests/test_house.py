@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+import pytest
+
 import designer
 from designer.model.region import PointList, Prism, Rectangle, Region
 from designer.plugins import RINGS
@@ -85,8 +87,12 @@ def test_the_core_imports_no_ring() -> None:
     assert inward == []
 
 
+MAP = FOLDER.parent / "CONTRIBUTING.md"
+
+
+@pytest.mark.skipif(not MAP.exists(), reason="an installed copy has no map")
 def test_contributing_maps_every_room() -> None:
-    text = (FOLDER.parent / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    text = MAP.read_text(encoding="utf-8")
     core, rings = (
         text.partition(f"\n| {head}")[2].partition("\n\n")[0]
         for head in ("room of the core", "ring |")

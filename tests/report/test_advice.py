@@ -177,6 +177,7 @@ def is_better(before: Requirement, after: Requirement) -> bool:
     return after.capacity - after.demand > before.capacity - before.demand
 
 
+@pytest.mark.cases_by_default(5)
 @pytest.mark.parametrize("name", REQUIREMENTS)
 def test_advice_for_a_requirement_betters_it(solve: Solve, name: str) -> None:
     base, remedies = REQUIREMENTS[name]
@@ -211,6 +212,7 @@ def test_advice_for_a_requirement_along_a_path_betters_it(
         assert is_better(asked(before, name), asked(moving(base, pace=3.0), name))
 
 
+@pytest.mark.slow
 def test_advice_for_clearance_and_stability_betters_them(solve: Solve) -> None:
     before = solve(CLEARANCE_NOT_KEPT)
     assert "apart, make the region smaller, or require less clearance" in advice(before)
@@ -345,6 +347,7 @@ def test_remedies_for_a_pose_hold_it(
     assert remedies.position_m is not None
 
 
+@pytest.mark.slow
 def test_no_begins_with_why_it_is_no(solve: Solve) -> None:
     """Four cables from above cannot hold 3 m/s² outward, whatever the rope."""
     corners = [[0, 0, 30], [100, 0, 30], [100, 60, 30], [0, 60, 30]]

@@ -66,6 +66,7 @@ def redundant(solve) -> Analysis:
     return solve(REDUNDANT)
 
 
+@pytest.mark.cases_by_default(1)
 @pytest.mark.parametrize("name", ["yard", "kept", "pose_only", "redundant"])
 def test_numbers_of_a_report_are_plain(name: str, request: pytest.FixtureRequest) -> None:
     assert [*faults(page(request.getfixturevalue(name)))] == []
