@@ -93,6 +93,7 @@ _MARGIN = 1.2
 _SURELY = 1e-9
 """Of all that is added up: what a proof has to be clear by, beside rounding."""
 _LARGEST_STRAIN = 0.5
+"""A cable that is stretched by more counts as broken."""
 _BEYOND = 1e3
 _MOST_BORNE = 10.0
 """Of the load, over the tension of a straight cable: a generous bound."""
