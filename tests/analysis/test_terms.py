@@ -139,6 +139,7 @@ def test_a_doubted_size_counts_as_third_hand(solve: Solve) -> None:
         assert told == (set() if is_tried else {"4 mm"})
 
 
+@pytest.mark.slow
 def test_materials_are_a_filter(solve: Solve) -> None:
     ropes = (
         HEAVY,
@@ -313,6 +314,7 @@ def test_the_first_sentence_tells_what_is_covered(
     assert analysis.terms.head(Answer.YES) == f"Yes, for {covers}"
 
 
+@pytest.mark.slow
 def test_the_shipped_crane_gets_a_rope_that_can_be_ordered() -> None:
     from designer.resources import example_file
 

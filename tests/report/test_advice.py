@@ -177,7 +177,7 @@ def is_better(before: Requirement, after: Requirement) -> bool:
     return after.capacity - after.demand > before.capacity - before.demand
 
 
-@pytest.mark.cases_by_default(5)
+@pytest.mark.cases_by_default(2)
 @pytest.mark.parametrize("name", REQUIREMENTS)
 def test_advice_for_a_requirement_betters_it(solve: Solve, name: str) -> None:
     base, remedies = REQUIREMENTS[name]

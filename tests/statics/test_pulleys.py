@@ -109,7 +109,7 @@ def hung(
     return -pull, float(max(ends)), float(sag)
 
 
-@pytest.mark.cases_by_default(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("lean", [0.0, 0.3])
 @pytest.mark.parametrize("near", [False, True])
 def test_what_cables_over_pulleys_hold_is_held(lean: float, near: bool) -> None:
