@@ -360,7 +360,7 @@ ForcePart = Annotated[float, bounded("force")]
 MomentPart = Annotated[float, bounded("moment")]
 Share = Annotated[float, bounded("direction")]
 HalfTurn = Annotated[float, bounded("half turn")]
-Modulus = Annotated[float, bounded("modulus")]
+YoungsModulus = Annotated[float, bounded("modulus")]
 Stress = Annotated[float, bounded("stress")]
 Angle = Annotated[float, bounded("angle")]
 FleetAngle = Annotated[float, bounded("fleet angle")]
@@ -472,7 +472,11 @@ class FileValue:
 
 @cache
 def reader_of(kind: Any) -> TypeAdapter[Any]:
-    """Return what reads values of a kind; made once, since that takes milliseconds."""
+    """Return what reads values of a kind; made once, since that takes milliseconds.
+
+    Older Pydantic looks up the names of its annotations in this module first, so that none of them
+    may name another thing here.
+    """
     return TypeAdapter(kind)
 
 

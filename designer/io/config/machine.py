@@ -613,7 +613,9 @@ class CableSection(Section):
     density: fields.Density = config_field(expected="a density such as '7800 kg/m^3'")
     """Mass per length over the area of the circle of the nominal diameter, of the family in
     which the optimum is computed."""
-    youngs_modulus: fields.Modulus = config_field("Modulus", expected="a modulus such as '200 GPa'")
+    youngs_modulus: fields.YoungsModulus = config_field(
+        "Modulus", expected="a modulus such as '200 GPa'"
+    )
     """Force per strain over the area of the circle of the nominal diameter."""
     allowable_stress: fields.Stress = config_field(expected="a stress such as '180 MPa'")
     """Allowable tension over the area of the circle of the nominal diameter, safety factor
