@@ -124,7 +124,10 @@ def _print_poses(poses: FoundPoses, path: Path) -> bool:
     n_found = np.bincount(poses.row, minlength=poses.n_rows)
     over = np.bincount(poses.row[poses.is_stable & ~poses.is_allowed], minlength=poses.n_rows) > 0
     total, stable = len(poses.row), int(n_stable.sum())
-    show(f"{total} poses found for {poses.n_rows} rows with {poses.cable.name}, {stable} stable.")
+    counts = [
+        f"{n} {word}{'' if n == 1 else 's'}" for n, word in ((total, "pose"), (poses.n_rows, "row"))
+    ]
+    show(f"{' found for '.join(counts)} with {poses.cable.name}, {stable} stable.")
     remarks = [
         *named_rows(n_found == 0, "have no pose that was found", "rows"),
         *named_rows((n_found > 0) & (n_stable == 0), "have no stable pose", "rows"),
