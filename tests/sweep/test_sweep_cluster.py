@@ -87,10 +87,11 @@ def test_a_worker_and_the_scheduler_are_killed_and_the_store_is_that_of_a_local_
     command += ["--no-plugins", "--cluster", f"tcp://127.0.0.1:{port}"]
     with cluster(port) as (scheduler, workers):
         sweep = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-        until(lambda: n_done(target) > 20)
+        until(lambda: n_done(target) > 20 or sweep.poll() is not None)
         workers[0].kill()
         before = n_done(target)
-        until(lambda: n_done(target) > before + 20)
+        until(lambda: n_done(target) > before + 20 or sweep.poll() is not None)
+        assert sweep.poll() is None, sweep.communicate()
         scheduler.kill()
         _, told = sweep.communicate(timeout=900)
     lines = [line for line in told.splitlines() if " s: sweep" not in line]  # how far it is
