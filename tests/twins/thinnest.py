@@ -9,12 +9,13 @@ a = μ - δ and b = μ + δ. With h = horizontal force over weight per length an
 
 Unknown are log h of every cable and c, the load over the weight per length; SLSQP makes c large.
 Of a given cable c is known, and SLSQP makes the largest tension over the strength small. With
-cables to spare no h is below that of the largest sag. Nothing is shared with the compiled solvers
-but the robot.
+cables to spare no h is below that of the largest sag. Over pulleys the cables leave where those of
+the last answer do, until that rests. Nothing is shared with the compiled solvers but the robot.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,7 +29,11 @@ from designer.physics import catenary
 STARTS = 14
 _STEEPEST = 3.0  # of δ: no cable more than about three times as long as its horizontal distance
 _BALANCED = 1e-9
+_NO_CABLE = 1e-6
 _NEWTONS = 30
+_MOST_TURNS = 80
+_PATIENCE = 15
+_AT_REST = 1e-9  # of the radius: what an exit point still moves by
 
 
 @dataclass(frozen=True)
@@ -92,15 +97,17 @@ class Problem:
     ):
         pose = Poses.at(position, None if robot.is_point_mass else turn)
         up = robot.upright
-        exits = robot.exit_points_m if exit_points_m is None else exit_points_m
-        chord = (exits - pose.attachment_points_m(robot)) @ up.T  # all in the base frame until here
-        lever = (pose.attachment_points_m(robot) - pose.position_m) @ up.T
+        self.robot, self.attachments_m = robot, pose.attachment_points_m(robot)
+        self.exits_m = robot.exit_points_m if exit_points_m is None else exit_points_m
+        chord = (self.exits_m - self.attachments_m) @ up.T  # all in the base frame until here
+        lever = (self.attachments_m - pose.position_m) @ up.T
         self.reach = float(np.abs(lever).sum(axis=1).max()) or 1.0
         self.rows = robot.balance_rows
         self.X, self.D = np.hypot(chord[:, 0], chord[:, 1]), chord[:, 2]
         self.L = np.hypot(self.X, self.D)
-        plan = np.column_stack([chord[:, :2] / self.X[:, None], np.zeros(len(chord))])
-        self.level, self.lift = self.wrench(lever, plan), self.wrench(lever, np.array([0, 0, 1.0]))
+        self.plan = np.column_stack([chord[:, :2] / self.X[:, None], np.zeros(len(chord))])
+        self.level = self.wrench(lever, self.plan)
+        self.lift = self.wrench(lever, np.array([0, 0, 1.0]))
         force = robot.pull_N[:3]
         centre = up @ pose.rotation @ robot.platform.centre_of_mass_m
         moment = robot.pull_N[3:] + np.cross(centre, robot.centre_pull_N)
@@ -234,6 +241,55 @@ class Problem:
             worst = max(np.abs(self.balance(z)).max(), -self.room(z).min())
         return float(z[-1]), z, float(worst)
 
+    def leaving_points_m(self, z: np.ndarray) -> np.ndarray:
+        """Return where these cables leave their pulleys, which stand on the exit points."""
+        up, _, _, length, *_ = self.cables(z[:-1])
+        toward = np.exp(z[:-1, None]) * -self.plan
+        toward[:, 2] = -(up + length)
+        toward = toward @ self.robot.upright
+        out = self.attachments_m - self.robot.exit_points_m
+        out[:, 2] = 0.0
+        out /= np.linalg.norm(out, axis=1)[:, None]
+        slope = np.arctan2(-toward[:, 2], (toward * out).sum(axis=1))
+        rim = (1.0 + np.sin(slope))[:, None] * out
+        rim[:, 2] = np.cos(slope)
+        return np.asarray(self.robot.exit_points_m + self.robot.pulley_radius_m * rim)
+
+    def best(
+        self, starts: list[np.ndarray], make: Callable[[np.ndarray], Problem]
+    ) -> tuple[Problem, np.ndarray, float] | None:
+        """Return the best that the starts end in, the problem that it solves, and its error.
+
+        Over pulleys each better one is followed until its exit points rest: ``make`` makes the
+        problem with others. None if no start ends in an equilibrium.
+        """
+        best = None
+        sign = -1.0 if self.given is None else 1.0
+        for start in starts:
+            problem, (value, z, worst) = self, self.solve(start)
+            if not problem.is_answer(value, worst):
+                continue
+            if best is not None and sign * value >= sign * best[1][-1]:
+                continue
+            rests = self.robot.pulley_radius_m == 0.0
+            for turn in range(0 if rests else _MOST_TURNS):
+                moved = problem.leaving_points_m(z) - problem.exits_m
+                rests = bool(np.abs(moved).max() < _AT_REST * self.robot.pulley_radius_m)
+                if rests:
+                    break
+                problem = make(problem.exits_m + (1.0 if turn < _PATIENCE else 0.3) * moved)
+                value, z, worst = problem.solve(z)
+            is_better = best is None or sign * value < sign * best[1][-1]
+            if rests and is_better and problem.is_answer(value, worst):
+                best = problem, z, worst
+        return best
+
+    def is_answer(self, value: float, worst: float) -> bool:
+        """Tell whether what the solver ended in is an equilibrium."""
+        if self.given is None:
+            return bool(worst < _BALANCED * min(1.0, value) and value > _NO_CABLE)
+        return bool(worst < _BALANCED * max(1.0, self.given))
+
 
 def least_utilisation(
     robot: Robot,
@@ -249,15 +305,18 @@ def least_utilisation(
 
     NaN where none ends in an equilibrium. Of a cable of the family with this weight per length.
     """
-    problem = Problem(robot, position, turn, material, weight_N_per_m, exit_points_m)
-    best, at = np.inf, np.full(robot.n_cables, np.nan)
-    assert problem.given is not None
-    for start in problem.starts(starts, rng):
+
+    def make(exits_m: np.ndarray | None) -> Problem:
+        return Problem(robot, position, turn, material, weight_N_per_m, exits_m)
+
+    problem = make(exit_points_m)
+    starts_at = problem.starts(starts, rng)
+    for start in starts_at:
         start[-1] = np.exp(start[:-1]).max() / problem.strength
-        f, z, worst = problem.solve(start)
-        if worst < _BALANCED * max(1.0, problem.given) and f < best:
-            best, at = f, np.exp(z[:-1])
-    return (best if np.isfinite(best) else np.nan), at
+    best = problem.best(starts_at, make)
+    if best is None:
+        return float("nan"), np.full(robot.n_cables, np.nan)
+    return float(best[1][-1]), np.exp(best[1][:-1])
 
 
 def thinnest(
@@ -270,14 +329,16 @@ def thinnest(
     exit_points_m: np.ndarray | None = None,
 ) -> Thinnest:
     """Return the thinnest cable that any of the starts ends in."""
-    problem = Problem(robot, position, turn, material, exit_points_m=exit_points_m)
-    best, at, residual = 1e-6, None, np.nan
-    for start in problem.starts(starts, rng):
-        c, z, worst = problem.solve(start)
-        if worst < _BALANCED * min(1.0, c) and c > best:
-            best, at, residual = c, z, worst / c
-    if at is None:
+
+    def make(exits_m: np.ndarray | None) -> Problem:
+        return Problem(robot, position, turn, material, exit_points_m=exits_m)
+
+    first = make(exit_points_m)
+    best = first.best(first.starts(starts, rng), make)
+    if best is None:
         return Thinnest(float("nan"), np.full(robot.n_cables, np.nan), float("nan"))
-    weight = problem.size / (best * problem.strength)
+    problem, z, worst = best
+    weight = problem.size / (z[-1] * problem.strength)
     area = weight / (STANDARD_GRAVITY_M_PER_S2 * material.density_kg_per_m3)
-    return Thinnest(float(np.sqrt(4 * area / np.pi)), problem.cables(at[:-1])[3], residual)
+    diameter_m = float(np.sqrt(4 * area / np.pi))
+    return Thinnest(diameter_m, problem.cables(z[:-1])[3], float(worst / z[-1]))
