@@ -12,7 +12,14 @@ import os
 import shutil
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    wait,
+)
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager
 from logging import CRITICAL, getLogger
@@ -255,8 +262,12 @@ def _run_until_death(
                         running[executor.submit(solve_points, plan.base, changes)] = waiting[0]
                     waiting.popleft()
                 for future in wait(running, _POLL_S, FIRST_COMPLETED).done:
-                    result = _result(future)
+                    result = _result(future, is_last=deaths[running[future]] >= _MAX_DEATHS)
                     points = running.pop(future)
+                    if result is None:
+                        deaths[points] += 1
+                        waiting.appendleft(points)
+                        continue
                     deaths.pop(points, None)
                     store.write(points, result)
                     advance(len(points))
@@ -272,12 +283,19 @@ def _run_until_death(
             advance(len(points))
 
 
-def _result(future: Future[Solved]) -> Solved:
+def _result(future: Future[Solved], is_last: bool) -> Solved | None:
+    """Return the result; None if it is lost, and to be asked for again unless this is the last try.
+
+    A worker of a cluster that dies takes along what it has not handed over, and each kind of
+    cluster tells that in its own way. What it cancels it does because its scheduler is gone.
+    """
     try:
         return future.result()
     except BrokenProcessPool:
         raise
-    except Exception as error:  # of a cluster: each kind of it tells this in its own way
+    except Exception as error:
+        if not (is_last or isinstance(error, CancelledError)):
+            return None
         line = f"the workers are gone ({described(error)})"
         raise OutputError(f"{line}; what is stored stays, and the same command goes on") from error
 

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -350,6 +351,24 @@ def test_a_cluster_that_goes_away_is_told(tmp_path: Path) -> None:
 
     with pytest.raises(OutputError, match=r"the workers are gone .*the same command goes on"):
         swept(written(tmp_path), tmp_path / "out.zarr", Gone)
+
+
+def test_what_a_lost_worker_takes_along_is_solved_again(tmp_path: Path) -> None:
+    lost: list[Future[Any]] = []
+
+    class Losing(ThreadPoolExecutor):
+        def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+            if len(lost) == 2:
+                return super().submit(fn, *args, **kwargs)
+            lost.append(Future())
+            lost[-1].set_exception(OSError("its worker is gone"))
+            return lost[-1]
+
+    path = written(tmp_path)
+    swept(path, tmp_path / "alone.zarr")
+    swept(path, tmp_path / "lost.zarr", partial(Losing, 1))
+    assert len(lost) == 2
+    assert same(tmp_path / "lost.zarr", tmp_path / "alone.zarr")
 
 
 def test_a_large_sweep_has_few_chunks() -> None:
