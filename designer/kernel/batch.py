@@ -76,6 +76,7 @@ def solve_batch(
     *,
     sag_max: float,
     pulleys_m: FloatArray | None = None,
+    near: FloatArray | None = None,
     proves_best: bool = False,
     decides: bool = False,
 ) -> Solution:
@@ -95,6 +96,8 @@ def solve_batch(
         its poses without an answer is that no cables within it hold them.
     pulleys_m : array (n_cables, 3), optional
         Exit points above the edges of the pulleys, in the frame of the situation [m].
+    near : array (n_poses, n_cables + 1), optional
+        Pulls of an equilibrium that is near, and its 1 / w [1, m/N]; NaN where none is known.
     proves_best : bool
         Whether to prove of a robot with cables to spare that no thinner taut cable holds a pose.
     decides : bool
@@ -135,7 +138,8 @@ def solve_batch(
     asked = situation, figures, plain(inverse_weight.reshape(-1)), out
     if robot.is_redundant or decides:
         *given, out = asked
-        share_out(solve_redundant_range, count, _SLOW_SHARE, *given, proves_best, out)
+        known = plain(np.empty((0, n + 1)) if near is None else near)
+        share_out(solve_redundant_range, count, _SLOW_SHARE, *given, known, proves_best, out)
     else:
         share_out(solve_range, count, _SHARE, *asked)
         if robot.has_one_branch and inverse_weight_m_per_N is None:

@@ -84,8 +84,9 @@ from designer.kernel.table import (
 
 REFUSED, UNDECIDED, FAILED = range(3)
 
-MOST_PARTS = 3000
-"""Parts that are looked at in one pose; all but a few in ten thousand need fewer than twenty."""
+MOST_PARTS, MOST_PARTS_OVER_PULLEYS = 50_000, 5_000
+"""Parts that are looked at in one pose; all but a few in ten thousand need fewer than twenty. Over
+pulleys, where a part takes ten times as long, a pose is decided several times."""
 _DEPTH = 300
 _NODES = 9
 _MARGIN = 1.2
@@ -106,6 +107,8 @@ _LEAST_SHARE = 0.05
 """Of a range, in logarithms, that is left on either side of a cut."""
 _NARROWEST = 1.0 + 1e-9
 """Ratio of the ends of a range that is not cut again."""
+_THIN = 1e-9
+"""Thickness of a body, over the forces, that the linear programme is better off without."""
 _ITERATIONS = 8
 _HALVINGS = 30
 _TURNS = 60
@@ -130,8 +133,9 @@ class Parts(NamedTuple):
     ranges : array (depth, 2, n + 1)
         Lowest and highest pull of each cable, and least and largest scaled c, in each part that is
         yet to be decided.
-    lines : array (2 + 4 n_curves, n)
-        Bodies of the present part.
+    lines : array (depth, 2 + 4 n_curves, n)
+        Bodies of these parts, with the pulls that each of them is for: a part that is cut leaves
+        its two all bodies but that of one cable.
     nodes : array (1 + 2 n_curves, n_nodes)
         Pulls of a cable, its lift there, and the slope of that; then of the other curves.
     columns : array (m, (1 + n_curves) n + 1)
@@ -166,7 +170,7 @@ def new_parts(m: int, n: int, curves: int = 1) -> tuple[Parts, Programme]:
     """Return the arrays for n cables in m equations, with one curve a cable or three."""
     parts = Parts(
         np.zeros((_DEPTH, 2, n + 1)),
-        np.zeros((2 + _CURVE_ROWS * curves, n)),
+        np.zeros((_DEPTH, 2 + _CURVE_ROWS * curves, n)),
         np.zeros((1 + 2 * curves, _NODES)),
         np.zeros((m, (1 + curves) * n + 1)),
         np.zeros((2, n)),
@@ -207,6 +211,7 @@ def set_ranges(pose: Pose, parts: Parts, ask: Ask, any_strength: bool) -> int:
     n, force = c.shape[1], _force_scale(pose, ask)
     whole[0, n] = ask.c_0
     whole[1, n] = ask.c_0
+    parts.lines[0, LOW] = np.nan  # of another pose
     for i in range(n):
         if pose.radius > 0.0 and np.isnan(c[LEAST_SLOPE, i]):
             return FAILED
@@ -231,11 +236,16 @@ def set_ranges(pose: Pose, parts: Parts, ask: Ask, any_strength: bool) -> int:
 
 @inner
 def _floor(pose: Pose, parts: Parts, i: int) -> float:
-    """Return the least pull for the sag that is allowed; over a pulley by secants."""
+    """Return the least pull for the sag that is allowed; over a pulley by bracketed secants.
+
+    Or, where a cable hangs down on its pulley so steeply that it hardly sags, the least at which it
+    still leaves that as a tangent.
+    """
     c, column = pose.cables, parts.column
     across, drop = c[X2, i], c[D, i]
     straight = np.sqrt(across)
     low, step, low_before, step_before = 0.0, 0.0, np.nan, np.nan
+    under, over = 0.0, np.inf
     for turn in range(_TURNS):
         column[X2, 0], column[D, 0], column[CHORD, 0] = across, drop, np.sqrt(across + drop * drop)
         p = least_pull(pose.least_pulls, column, 0, c[KAPPA, i])
@@ -246,7 +256,12 @@ def _floor(pose: Pose, parts: Parts, i: int) -> float:
             break
         share = (low - low_before) / (step_before - step) if turn > 1 else 1.0
         low_before, step_before = low, step
+        under, over = (max(under, low), over) if step > 0.0 else (under, min(over, low))
         low += min(max(share, _LEAST_SHARE), 1.0) * step
+        if not under < low < over:
+            if over < under * (1.0 + _OUTWARD):
+                return float(over)
+            low = 0.5 * (under + over) if over < np.inf else 2.0 * under
         x, y, drop, _ = _tangent(pose, i, low)
         across = x * x + y * y
     return float(min(low, low + step) / (1.0 + _OUTWARD))
@@ -397,9 +412,9 @@ def leaving_slope(pose: Pose, i: int, p: float) -> float:
 
 
 @inner
-def _enclose(pose: Pose, parts: Parts, i: int, low: float, high: float) -> bool:
+def _enclose(pose: Pose, parts: Parts, lines: FloatArray, i: int, low: float, high: float) -> bool:
     """Fill the line and the body of a cable between two pulls; False if they can't be told."""
-    c, nodes, lines, curves = pose.cables, parts.nodes, parts.lines, parts.lifts.shape[1]
+    c, nodes, curves = pose.cables, parts.nodes, parts.lifts.shape[1]
     ratio = (high / low) ** (1.0 / (_NODES - 1))
     p = low
     for j in range(_NODES):
@@ -458,12 +473,13 @@ def bound_part(pose: Pose, parts: Parts, part: int, lp: Programme, ask: Ask) -> 
     The point goes into the first row of pulls and lifts; its distance is a share of the force
     scale.
     """
-    n, box = pose.cables.shape[1], parts.ranges[part]
+    n, box, lines = pose.cables.shape[1], parts.ranges[part], parts.lines[part]
     force = _force_scale(pose, ask)
     if ask.c_s > 0.0 and not _keep_least(pose, box):
         return REFUSED, 0.0
     for i in range(n):
-        if not _enclose(pose, parts, i, box[0, i], box[1, i]):
+        is_kept = lines[LOW, i] == box[0, i] and lines[HIGH, i] == box[1, i]
+        if not is_kept and not _enclose(pose, parts, lines, i, box[0, i], box[1, i]):
             return FAILED, np.inf
     to_force = pose.scale[FORCE] / force
     least_c, largest_c = box[0, n] * to_force, box[1, n] * to_force
@@ -471,9 +487,9 @@ def bound_part(pose: Pose, parts: Parts, part: int, lp: Programme, ask: Ask) -> 
     for side in range(2):
         if side == 1 and most <= largest_c:  # then the point that bears most is one of the part
             break
-        status, borne = _bear(pose, parts, lp, 1.0 - 2.0 * side, force, side)
+        status, borne = _bear(pose, parts, lines, lp, 1.0 - 2.0 * side, force, side)
         misses = status == REFUSED or (borne < least_c if side == 0 else -borne > largest_c)
-        if misses and _is_apart(pose, parts, least_c, largest_c, force):
+        if misses and _is_apart(pose, parts, lines, least_c, largest_c, force):
             return REFUSED, 0.0
         if status != UNDECIDED:
             return FAILED, np.inf
@@ -532,14 +548,20 @@ def _shortage(pose: Pose, parts: Parts, i: int, ask: Ask) -> float:
 
 @inner
 def _bear(
-    pose: Pose, parts: Parts, lp: Programme, sign: float, force: float, row: int
+    pose: Pose,
+    parts: Parts,
+    lines: FloatArray,
+    lp: Programme,
+    sign: float,
+    force: float,
+    row: int,
 ) -> tuple[int, float]:
     """Bear as much of the load as the bodies can, or with sign -1 of its opposite.
 
     Returns that, over the force scale; refused if they have no point at all, failed if the linear
     programme ends otherwise. The multipliers go into the wrench.
     """
-    c, lines, table = pose.cables, parts.lines, lp.table
+    c, table = pose.cables, lp.table
     m, n, curves = lp.basis.size, c.shape[1], parts.lifts.shape[1]
     last = (1 + curves) * n
     for i in range(n):
@@ -556,9 +578,9 @@ def _bear(
             for q in range(curves):
                 rows, direction = _CURVE_ROWS * q, c[_DIRECTIONS[q] + at, i]
                 own += direction * lines[SLOPE + rows, i]
-                table[k, n * (1 + q) + i] = (
-                    direction * _unit(pose, i, q, force) * c[SHARE, i] / force
-                )
+                is_thin = lp.room[n * (1 + q) + i] < _THIN
+                unit = 0.0 if is_thin else _unit(pose, i, q, force)
+                table[k, n * (1 + q) + i] = direction * unit * c[SHARE, i] / force
                 rest -= (
                     direction
                     * (lines[REST + rows, i] + lines[BELOW + rows, i])
@@ -621,14 +643,16 @@ def _value(parts: Parts, lp: Programme, row: int) -> bool:
 
 
 @inner
-def _is_apart(pose: Pose, parts: Parts, least_c: float, largest_c: float, force: float) -> bool:
+def _is_apart(
+    pose: Pose, parts: Parts, lines: FloatArray, least_c: float, largest_c: float, force: float
+) -> bool:
     """Tell whether the wrench, or its opposite, proves that the part misses the load.
 
     At all c between two, over the force scale: what is missed is linear in c.
     """
     y = parts.wrench
     for _ in range(2):
-        bound, size = _support(pose, parts, y, force)
+        bound, size = _support(pose, lines, y, force)
         of_load = 0.0
         for k in range(y.size):
             of_load += y[k] * pose.load[pose.rows[k]]
@@ -641,15 +665,15 @@ def _is_apart(pose: Pose, parts: Parts, least_c: float, largest_c: float, force:
 
 
 @inner
-def _support(pose: Pose, parts: Parts, y: FloatArray, force: float) -> tuple[float, float]:
+def _support(pose: Pose, lines: FloatArray, y: FloatArray, force: float) -> tuple[float, float]:
     """Return the most work that cables can do with a wrench, and the size of what is added up."""
-    c, lines = pose.cables, parts.lines
+    c, curves = pose.cables, (lines.shape[0] - 2) // _CURVE_ROWS
     total, size = 0.0, 0.0
     for i in range(c.shape[1]):
         along, rest, rest_size = 0.0, 0.0, 0.0
         for k in range(y.size):
             along += y[k] * c[LEVEL + pose.rows[k], i]
-        for q in range(parts.lifts.shape[1]):
+        for q in range(curves):
             rows, beta = _CURVE_ROWS * q, 0.0
             for k in range(y.size):
                 beta += y[k] * c[_DIRECTIONS[q] + pose.rows[k], i]
@@ -666,20 +690,26 @@ def _support(pose: Pose, parts: Parts, y: FloatArray, force: float) -> tuple[flo
 
 
 @inner
-def cut_part(pose: Pose, parts: Parts, part: int, ask: Ask) -> bool:
-    """Cut a part where its point is farthest from what the cables do.
+def cut_part(pose: Pose, parts: Parts, part: int, ask: Ask, apart: float) -> bool:
+    """Cut a part where its point is farthest from what the cables do, if there is a point.
 
     That is at the point's pull of one of them, or below its c where it is short of a least tension.
-    False where none is left to be cut, or there is no room for one more part.
+    Where it could not be told how far ``apart`` they are, the widest range is cut. False where none
+    is left to be cut, or there is no room for one more part.
     """
     ranges, n = parts.ranges, pose.cables.shape[1]
     if part + 1 >= _DEPTH:
         return False
     farthest, axis, at = 0.0, -1, 0.0
-    for i in range(n):
-        apart, short = _distance(pose, parts, i), _shortage(pose, parts, i, ask)
-        if apart > farthest and ranges[part, 1, i] > _NARROWEST * ranges[part, 0, i]:
-            farthest, axis, at = apart, i, parts.pulls[0, i]
+    widest = _NARROWEST
+    for i in range(n if not apart < np.inf else 0):
+        width = ranges[part, 1, i] / ranges[part, 0, i]
+        if width > widest:
+            widest, axis, at = width, i, np.sqrt(ranges[part, 0, i] * ranges[part, 1, i])
+    for i in range(n if apart < np.inf else 0):
+        away, short = _distance(pose, parts, i), _shortage(pose, parts, i, ask)
+        if away > farthest and ranges[part, 1, i] > _NARROWEST * ranges[part, 0, i]:
+            farthest, axis, at = away, i, parts.pulls[0, i]
             middle = np.sqrt(ranges[part, 0, i] * ranges[part, 1, i])
             at *= (middle / at) ** _TOWARD_MIDDLE
         if short > farthest and ranges[part, 1, n] > _NARROWEST * ranges[part, 0, n]:
@@ -695,5 +725,7 @@ def cut_part(pose: Pose, parts: Parts, part: int, ask: Ask) -> bool:
         at = min(max(at, low + _LEAST_SHARE * (high - low)), high - _LEAST_SHARE * (high - low))
     for side in range(2):
         copy(ranges[part, side], ranges[part + 1, side])
+    for row in range(parts.lines.shape[1]):
+        copy(parts.lines[part, row], parts.lines[part + 1, row])
     ranges[part, 1, axis] = ranges[part + 1, 0, axis] = at
     return True

@@ -37,6 +37,7 @@ from designer.kernel.compiling import element, inner, kernel
 from designer.kernel.feasible import (
     FAILED,
     MOST_PARTS,
+    MOST_PARTS_OVER_PULLEYS,
     REFUSED,
     UNDECIDED,
     Parts,
@@ -124,6 +125,7 @@ _AT_ROUNDING = 1e-13
 _LIGHTER = 1.0 + 1e-5
 """Of the inverse weight: what a better answer has at least; half of it in diameter."""
 _MOST_BETTER = 8
+_MOST_PARTS_OF_PROOF = 5_000
 
 
 @kernel
@@ -133,12 +135,15 @@ def solve_redundant_range(
     situation: Situation,
     figures: CableFigures,
     inverse_weight: FloatArray,
+    near: FloatArray,
     proves_best: bool,
     out: Answers,
 ) -> None:
     """Solve the poses from `start` to `stop`, or prove of them that no taut cables hold them.
 
-    Of cables that are sized it may be proved as well that no thinner ones do.
+    Of cables that are sized it may be proved as well that no thinner ones do. Where an equilibrium
+    is known to be ``near`` (0 or n_poses, n_cables + 1), by its pulls and its inverse weight, that
+    is where to start; NaN where none is.
     """
     m, n = situation.rows.size, situation.attachments.shape[0]
     pose = new_pose(situation, figures)
@@ -151,13 +156,24 @@ def solve_redundant_range(
         out.wrench[at] = np.nan
         out.leaving[at] = np.nan
         straight_c, spans = massless(pose, lp)
+        straight_s = float(lp.z[n])
         limit_sag(pose)
         ask = asked(pose, inverse_weight[at if inverse_weight.size > 1 else 0])
         verdict = NOT_CONVERGED
-        if spans:
-            s, gap = _walk(pose, lp, ask)
+        is_near = near.shape[0] > 0 and near[at, n] > 0.0
+        for turn in range(0 if is_near else 2, 3 if spans else 0):
+            s = straight_s
+            if turn < 2:
+                borne = near[at, n] * pose.scale[SIZE] / pose.scale[FORCE]
+                s = _pull_as(pose, ask, near[at], borne)
+            if turn == 0:
+                s, gap = climb(pose, ask, s, KEPT_PULLS[1], PATIENCE, scratch)
+            else:
+                s, gap = _walk(pose, lp, ask, s, is_near=turn == 1)
             if gap <= OPTIMAL_WITHIN:
                 verdict = _store(out, at, pose, ask, s, gap, straight_c)
+            if verdict == SOLVED:
+                break
         if verdict != SOLVED:
             verdict = _decide(pose, parts, bodies, ask, scratch, straight_c, out, at)
         if verdict != SOLVED:
@@ -207,7 +223,7 @@ def _decide(
     if status == REFUSED:
         return _refusal(pose, parts, bodies, ask, out, at)
     count = 0 if status == FAILED else 1
-    for turn in range(MOST_PARTS):
+    for turn in range(MOST_PARTS_OVER_PULLEYS if pose.radius > 0.0 else MOST_PARTS):
         apart = np.inf
         if count > 0:
             status, apart = bound_part(pose, parts, count - 1, bodies, ask)
@@ -237,7 +253,7 @@ def _decide(
                 return SOLVED
             if pose.radius > 0.0 and apart < _AT_ROUNDING:
                 break  # an equilibrium, but over pulleys that are yet to be moved
-        if not cut_part(pose, parts, count - 1, ask):
+        if not cut_part(pose, parts, count - 1, ask, apart):
             break
         count += 1
     return NOT_CONVERGED
@@ -248,16 +264,22 @@ def _climb_from_point(
     pose: Pose, parts: Parts, ask: Ask, apart: float, scratch: Scratch
 ) -> tuple[float, float]:
     """Start the interior point from a point of the bodies; where that is on the curves, take it."""
-    c, s = pose.cables, -1.0
-    for i in range(c.shape[1]):
-        c[P, i] = parts.pulls[0, i]
-        s = min(s, -c[P, i] / c[UNIT, i])
-    s = parts.borne[0] if ask.c_s > 0.0 else s
+    c, s = pose.cables, _pull_as(pose, ask, parts.pulls[0], parts.borne[0])
     if apart > _ON_CURVES:
         return climb(pose, ask, s, KEPT_PULLS[0], PATIENCE, scratch)
     for i in range(c.shape[1]):
         c[L, i] = settled_length(c, i, c[P, i])
     return s, 0.0
+
+
+@inner
+def _pull_as(pose: Pose, ask: Ask, pulls: FloatArray, scaled_c: float) -> float:
+    """Pull the cables so; return the s of that, with the c where c is sought."""
+    c, s = pose.cables, -1.0
+    for i in range(c.shape[1]):
+        c[P, i] = pulls[i]
+        s = min(s, -c[P, i] / c[UNIT, i])
+    return scaled_c if ask.c_s > 0.0 else s
 
 
 @inner
@@ -278,7 +300,7 @@ def _is_best(
         lighter = Ask(best * _LIGHTER, 1.0, 1.0, 0.0)
         status = set_ranges(pose, parts, lighter, False)
         count, is_better = 1 if status == UNDECIDED else 0, False
-        for turn in range(MOST_PARTS if count > 0 else 0):
+        for turn in range(_MOST_PARTS_OF_PROOF if count > 0 else 0):
             status, apart = bound_part(pose, parts, count - 1, bodies, lighter)
             if status == REFUSED:
                 count -= 1
@@ -298,7 +320,7 @@ def _is_best(
                 copy(of_pose, out.poses[at])
                 for i in range(of_cables.shape[0]):
                     copy(of_cables[i], out.cables[at, i])
-            if not cut_part(pose, parts, count - 1, lighter):
+            if not cut_part(pose, parts, count - 1, lighter, apart):
                 break
             count += 1
         if not is_better:
@@ -368,16 +390,20 @@ def massless(pose: Pose, lp: Programme) -> tuple[float, bool]:
 
 
 @element
-def _walk(pose: Pose, lp: Programme, ask: Ask) -> tuple[float, float]:
+def _walk(pose: Pose, lp: Programme, ask: Ask, s: float, is_near: bool) -> tuple[float, float]:
     """Solve by linear programmes, one a Newton step; return s and the last relative step.
 
-    The basis of the straight cables is the start. An infinite step tells that the steps do not
-    settle.
+    The basis of the straight cables is the start, and so are these, unless the pulls of the pose
+    are near. An infinite step tells that the steps do not settle.
     """
-    n = pose.cables.shape[1]
-    s = float(lp.z[n])  # of straight cables
-    make_straight(pose, 0.5)
-    for iteration in range(_MOST_STEPS):
+    c, n = pose.cables, pose.cables.shape[1]
+    if is_near:
+        for i in range(n):
+            c[L, i] = settled_length(c, i, c[P, i])
+        linearise(pose)
+    else:
+        make_straight(pose, 0.5)
+    for iteration in range(1 if is_near else 0, _MOST_STEPS):
         choose_bounds(pose, ask.c_0 + s * ask.c_s)
         _write_programme(lp, pose, ask)
         if not rebuild(lp) or maximise(lp) != OPTIMAL:

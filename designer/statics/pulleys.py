@@ -22,8 +22,8 @@ MOST_ITERATIONS = 40
 """For tangent points to rest: a handful does, but for slack cables over a large pulley."""
 STILL_RAD, SETTLED_RAD = 1e-13, 1e-9
 """Last change of the angle at which a cable leaves its pulley: at rounding, and good enough."""
-_PATIENCE = 8
-"""Turns after which each cable goes by its own secant."""
+PATIENCE = 8
+"""Turns after which each cable goes by its own secant, and a pose starts from its last answer."""
 _LEAST_SHARE = 1.0 / 32.0
 """Of the way to the next tangent point, however it swings."""
 Answer = TypeVar("Answer")
@@ -144,7 +144,7 @@ def over_pulleys(
         gap = np.fmax.reduce(np.abs(step), axis=-1, initial=0.0)
         if np.all(gap <= STILL_RAD):
             break
-        if iteration >= _PATIENCE:
+        if iteration >= PATIENCE:
             change = np.where(gap[..., None] > SETTLED_RAD, step_before - step, 0.0)
             secant = np.divide(slope - slope_before, change, out=share, where=change != 0.0)
             share = np.clip(secant, _LEAST_SHARE, 1.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from itertools import count
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,12 +16,14 @@ from designer.physics import pulley
 from designer.progress import checkpoint
 from designer.statics.geometry import (
     CableGeometry,
+    cable_geometry,
     level_geometry,
     upright_exit_points_m,
     upright_situation,
 )
 from designer.statics.pulleys import (
     MOST_ITERATIONS,
+    PATIENCE,
     SETTLED_RAD,
     STILL_RAD,
     PulleyRun,
@@ -120,8 +123,12 @@ def _solve_over_pulleys(
 
     ones = np.ones(robot.n_cables)
     pulleys_m = upright_exit_points_m(robot) if robot.pulley_radius_m > 0.0 else None
+    near = np.full((len(flat.position_m), robot.n_cables + 1), np.nan)
+    turn = count()
 
     def solve(run: PulleyRun) -> tuple[Solution, FloatArray, float]:
+        # Of several equilibria it is to stay with one, or the tangent points swing between them.
+        stays = next(turn) >= PATIENCE
         solution = solve_batch(
             robot,
             task.situation.starting_at(run.exit_points_m),
@@ -131,6 +138,7 @@ def _solve_over_pulleys(
             task.inverse_weight_m_per_N,
             sag_max=task.sag_max,
             pulleys_m=pulleys_m,
+            near=near if stays else None,
             **wishes,
         )
         if robot.pulley_radius_m == 0.0:  # no cable leaves at an angle that matters
@@ -140,6 +148,10 @@ def _solve_over_pulleys(
             downward = weight * solution.length_m - solution.force_z_N
         slope_rad = np.arctan2(downward, solution.force_x_N)
         is_solved = (solution.verdict == Verdict.SOLVED)[:, None]
+        across = cable_geometry(robot, flat, run.exit_points_m).horizontal_distance_m
+        pulls = solution.force_x_N / (weight * across)
+        answer = np.hstack([pulls, 1.0 / solution.weight_N_per_m[:, None]])
+        np.copyto(near, answer, where=is_solved)
         return solution, np.where(is_solved, slope_rad, solution.leaving_rad), 0.0
 
     solution, run, gap_rad = over_pulleys(robot, flat, solve, turns)

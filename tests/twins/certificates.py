@@ -139,7 +139,7 @@ def _search(situation, figures, inverse_weight, out):
         for _ in range(MOST_PARTS):
             if count == 0:
                 break
-            status, _apart = bound_part(pose, parts, count - 1, bodies, ask)
+            status, apart = bound_part(pose, parts, count - 1, bodies, ask)
             if status == REFUSED:
                 count -= 1
                 ends = parts.ranges[count, :, n]
@@ -151,7 +151,7 @@ def _search(situation, figures, inverse_weight, out):
                 out[at, 1] += 1
                 out[at, 2] += closed or _is_certified(pose, parts, count, ends)
                 out[at, 0] = count == 0
-            elif cut_part(pose, parts, count - 1, ask):
+            elif cut_part(pose, parts, count - 1, ask, apart):
                 count += 1
             else:
                 break

@@ -84,7 +84,10 @@ def _cables(h: np.ndarray, X: np.ndarray, D: np.ndarray, k: float) -> np.ndarray
 
 
 class Problem:
-    """One pose, forces over the strength; see the head of the file."""
+    """One pose, forces over the strength; see the head of the file.
+
+    Where it ``is_taut`` no cable sags more than allowed, also of a robot without cables to spare.
+    """
 
     def __init__(
         self,
@@ -94,6 +97,7 @@ class Problem:
         material: Material,
         weight_N_per_m: float | None = None,
         exit_points_m: np.ndarray | None = None,
+        is_taut: bool = False,
     ):
         pose = Poses.at(position, None if robot.is_point_mass else turn)
         up = robot.upright
@@ -122,7 +126,7 @@ class Problem:
             None if weight_N_per_m is None else self.size / (weight_N_per_m * self.strength)
         )
         self.low = np.log(self.X / (2 * _STEEPEST))
-        if robot.is_redundant:
+        if robot.is_redundant or is_taut:
             self.low = np.maximum(self.low, np.log(self._of_sag(robot.sag_max)))
         self.last: tuple[bytes, tuple[np.ndarray, ...]] = (b"", ())
 
@@ -300,6 +304,7 @@ def least_utilisation(
     rng: np.random.Generator,
     starts: int = STARTS,
     exit_points_m: np.ndarray | None = None,
+    is_taut: bool = False,
 ) -> tuple[float, np.ndarray]:
     """Return the least largest tension over the strength that any start ends in, and the pulls h.
 
@@ -307,7 +312,7 @@ def least_utilisation(
     """
 
     def make(exits_m: np.ndarray | None) -> Problem:
-        return Problem(robot, position, turn, material, weight_N_per_m, exits_m)
+        return Problem(robot, position, turn, material, weight_N_per_m, exits_m, is_taut)
 
     problem = make(exit_points_m)
     starts_at = problem.starts(starts, rng)
@@ -327,11 +332,12 @@ def thinnest(
     rng: np.random.Generator,
     starts: int = STARTS,
     exit_points_m: np.ndarray | None = None,
+    is_taut: bool = False,
 ) -> Thinnest:
-    """Return the thinnest cable that any of the starts ends in."""
+    """Return the thinnest cable that any of the starts ends in; see `Problem`."""
 
     def make(exits_m: np.ndarray | None) -> Problem:
-        return Problem(robot, position, turn, material, exit_points_m=exits_m)
+        return Problem(robot, position, turn, material, None, exits_m, is_taut)
 
     first = make(exit_points_m)
     best = first.best(first.starts(starts, rng), make)
