@@ -24,8 +24,8 @@ from designer.statics.inverse import Statics, platform_branch_N, reaction_N, win
 from designer.workspace.refine import ONE_CLIMB
 
 EXTREMES = ("largest", "horizontal", "up", "down")
-"""Of which of its sizes a reaction is largest; the last two along the true vertical, so that an
-upward force that never is one has a negative size."""
+"""Of which of its sizes a reaction is largest; the last two along the true vertical. Where no force
+points that way the size is negative, of the one that points nearest to it."""
 _CLIMB_AFTER_TURNING = replace(ONE_CLIMB, per_edge=0, per_face=0, inside=0, tolerance=1e-4)
 """Of the place after its loads were turned: there are a hundred extremes."""
 
@@ -78,6 +78,10 @@ def _criteria(loads: Sequence[CaseLoads]) -> list[Criterion]:
     def sizes(loaded: Loaded, statics: Statics) -> FloatArray:
         if not last or last[0][0] is not statics:
             of_all = sizes_N(statics)
+            against = of_all[..., 2:] < 0.0
+            # Of forces that point the other way the direction is sought: their least is some slack
+            # cable's, which is of no interest and jumps with the internal forces.
+            np.divide(of_all[..., 2:], of_all[..., :1], out=of_all[..., 2:], where=against)
             if loaded.lost_cable is not None:
                 of_all = np.insert(of_all, loaded.lost_cable - 1, np.nan, axis=-2)
             last[:] = [(statics, of_all)]
@@ -114,7 +118,7 @@ def _reaction(evaluation: Evaluation) -> Reaction:
         mast=int(mast),
         load_case=requirement.load_case,
         extreme=extreme,
-        size_N=requirement.demand,
+        size_N=float(sizes_N(statics)[0, column, EXTREMES.index(extreme)]),
         force_N=reaction_N(statics)[0, column],
         platform_branch_N=platform_branch_N(statics)[0, column],
         winch_branch_N=None if winch_branch is None else winch_branch[0, column],

@@ -49,7 +49,7 @@ ROUNDING = 1e-9
 """Relative: how exactly the solver keeps a limit that it chooses the internal forces by."""
 _MOST_LOADS = 14
 """Of those of a load case, in which straight cables are searched: as many as inertia forces."""
-_OF_MANY = replace(LIGHT, inside=2048, starts=12)
+_OF_MANY = replace(LIGHT, inside=4096, starts=12)
 """For many extremes at once, which share what is explored: internal forces jump, so that they have
 maxima beside each other."""
 _MAX_ITERATIONS = 4

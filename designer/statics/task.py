@@ -143,13 +143,13 @@ def _solve_over_pulleys(
         )
         if robot.pulley_radius_m == 0.0:  # no cable leaves at an angle that matters
             return solution, np.empty(0), 0.0
-        with np.errstate(invalid="ignore"):  # forces are infinite at infinite section
+        across = cable_geometry(robot, flat, run.exit_points_m).horizontal_distance_m
+        with np.errstate(invalid="ignore", divide="ignore"):  # forces at infinite section
             weight = solution.weight_N_per_m[:, None] * task.relative_weights
             downward = weight * solution.length_m - solution.force_z_N
+            pulls = solution.force_x_N / (weight * across)
         slope_rad = np.arctan2(downward, solution.force_x_N)
         is_solved = (solution.verdict == Verdict.SOLVED)[:, None]
-        across = cable_geometry(robot, flat, run.exit_points_m).horizontal_distance_m
-        pulls = solution.force_x_N / (weight * across)
         answer = np.hstack([pulls, 1.0 / solution.weight_N_per_m[:, None]])
         np.copyto(near, answer, where=is_solved)
         return solution, np.where(is_solved, slope_rad, solution.leaving_rad), 0.0

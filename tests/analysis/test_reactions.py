@@ -157,6 +157,9 @@ def test_no_sample_exceeds_the_envelope(name: str, solve_study: Solve) -> None:
                 dense[mast, extreme] = max(dense.get((mast, extreme), -np.inf), size)
     for reaction in analysis.reactions:
         largest = dense[reaction.mast, reaction.extreme]
+        if reaction.size_N < 0.0:  # no force points that way
+            assert largest < 0.0
+            continue
         assert largest - 1e-6 * abs(largest) <= reaction.size_N <= largest + 0.1 * abs(largest)
 
 
@@ -220,7 +223,7 @@ A_PLATEAU = TurnedBox(
     (0.0, 0.04420337, 0.05567877),
     0.0025,
 )
-# The pose in which exit point 6 is pushed down most is none of those in the first 14 directions.
+# The pose in which exit point 8 is pulled most is none of those in the first 14 directions.
 A_SLAB = TurnedBox(
     ((0.46902729, 0.84175935), (-0.08704708, -0.08465235), (0.87195781, 0.98756736)),
     (0.0, 0.0, 0.0),
@@ -244,8 +247,8 @@ def test_the_place_of_a_reaction_follows_its_load() -> None:
     case = LoadCase("operating", acceleration_m_per_s2=1.0)
     loads = A_SLAB.loads(study.robot, study.material.cable(A_SLAB.diameter_m), case)
     reactions = reactions_of([loads], lambda _: None)
-    down = next(r for r in reactions if (r.mast, r.extreme) == (6, "down"))
-    assert down.size_N > -18.8  # -19.8 N in the pose that is worst in one of the first directions
+    largest = next(r for r in reactions if (r.mast, r.extreme) == (8, "largest"))
+    assert largest.size_N > 49.5  # 49.3 N in the pose that is worst in one of the first directions
 
 
 @pytest.mark.slow

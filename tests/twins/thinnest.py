@@ -31,6 +31,8 @@ _STEEPEST = 3.0  # of δ: no cable more than about three times as long as its ho
 _BALANCED = 1e-9
 _NO_CABLE = 1e-6
 _NEWTONS = 30
+_SAG_OF_STRETCH = 0.15  # share of the sag, for a cable that its own weight would stretch to double
+_LARGEST_STRAIN = 0.5  # beyond, a cable counts as broken
 _MOST_TURNS = 80
 _PATIENCE = 15
 _AT_REST = 1e-9  # of the radius: what an exit point still moves by
@@ -136,14 +138,18 @@ class Problem:
         return both[:, self.rows].T
 
     def _of_sag(self, sag: float) -> np.ndarray:
-        """Return the least h at which no cable sags more than this share of its chord."""
+        """Return the least h at which no cable sags more than this share of its chord.
+
+        Hardly less, as the tables of the compiled solvers have it for what cables stretch.
+        """
         EA = 1.0 / self.kappa
+        most = sag * (1.0 - _SAG_OF_STRETCH * self.kappa * self.L)
         low, high = self.X / (2 * _STEEPEST), 1e3 * self.L
         for _ in range(100):
             h = np.sqrt(low * high)
             length, force_z = catenary.length_and_force_z(h / self.X, self.X, self.D, EA, 1.0)
             deep = catenary.sag_m(length, h, force_z, EA, 1.0, self.X, self.D)
-            slack = ~(deep <= sag * self.L)
+            slack = ~(deep <= most * self.L)
             low, high = np.where(slack, h, low), np.where(slack, high, h)
         return high
 
@@ -227,14 +233,15 @@ class Problem:
     def solve(self, start: np.ndarray) -> tuple[float, np.ndarray, float]:
         low, sign = self.low, -1.0 if self.given is None else 1.0
         most = 2 if self.given is None else 1e4 * max(1.0, self.given)
+        most_s = None if self.given is None else _LARGEST_STRAIN / (self.kappa * self.strength)
         high = np.maximum(np.log(most * self.strength * self.X / self.L + self.X), low + 1.0)
         with np.errstate(all="ignore"):
             answer = minimize(
                 lambda z: sign * z[-1],
-                np.clip(start, np.append(low, 0), np.append(high, np.inf)),
+                np.clip(start, np.append(low, 0), np.append(high, most_s or np.inf)),
                 jac=lambda z: sign * np.eye(z.size)[-1],
                 method="SLSQP",
-                bounds=[*zip(low, high, strict=True), (0.0, None)],
+                bounds=[*zip(low, high, strict=True), (0.0, most_s)],
                 constraints=[
                     {"type": "eq", "fun": self.balance, "jac": self.balance_slope},
                     {"type": "ineq", "fun": self.room, "jac": self.room_slope},
