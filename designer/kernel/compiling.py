@@ -63,12 +63,16 @@ class _InnerCompiler(Compiler):  # type: ignore[misc]
         super().__init__(typing, target, library or _Inner(target.codegen(), "inner"), *rest)
 
 
-_CALLED_BY_KERNELS = {
+_MAKES_ARRAYS = {
+    "_nrt": True,
     **_OPTIONS,
     "no_cfunc_wrapper": True,
     "no_cpython_wrapper": True,
     "pipeline_class": _InnerCompiler,
 }
+# What is handed to them outlives the call, so no references are counted: that is a seventh of what
+# compiling takes, and a fourth of the time of a pose. Numba refuses those that make an array.
+_CALLED_BY_KERNELS = {**_MAKES_ARRAYS, "_nrt": False}
 
 
 def element(function: Function) -> Function:
@@ -80,6 +84,12 @@ def element(function: Function) -> Function:
 def inner(function: Function) -> Function:
     """Compile what kernels alone call, not inlined; it has no entry for a call from Python."""
     compiled: Function = numba.njit(**_CALLED_BY_KERNELS)(function)
+    return compiled
+
+
+def allocating(function: Function) -> Function:
+    """Compile the same where it makes arrays: before the loop of a kernel, for all its turns."""
+    compiled: Function = numba.njit(**_MAKES_ARRAYS)(function)
     return compiled
 
 

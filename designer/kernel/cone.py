@@ -32,7 +32,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray, VerdictArray
 from designer.kernel.answer import NOT_CONVERGED, NOT_FOUND, OUTSIDE_HULL, RANK_DEFICIENT
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, inner, kernel
+from designer.kernel.compiling import allocating, element, inner, kernel
 from designer.kernel.linear import copy
 from designer.kernel.pose import (
     LEAST,
@@ -85,7 +85,7 @@ class Cone(NamedTuple):
     triangle: FloatArray
 
 
-@inner
+@allocating
 def new_cone(m: int, n_rays: int) -> Cone:
     """Return the arrays for so many rays and m balanced components."""
     return Cone(

@@ -41,7 +41,7 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.kernel.compiling import element, inner
+from designer.kernel.compiling import allocating, element, inner
 from designer.kernel.least_pull import least_pull
 from designer.kernel.linear import copy, solve_small
 from designer.kernel.pose import (
@@ -165,7 +165,7 @@ class Parts(NamedTuple):
     column: FloatArray
 
 
-@inner
+@allocating
 def new_parts(m: int, n: int, curves: int = 1) -> tuple[Parts, Programme]:
     """Return the arrays for n cables in m equations, with one curve a cable or three."""
     parts = Parts(

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.kernel.compiling import inner
+from designer.kernel.compiling import allocating, inner
 from designer.kernel.linear import solve_small
 from designer.kernel.pose import (
     COUPLING,
@@ -104,7 +104,7 @@ class Scratch(NamedTuple):
     value: FloatArray
 
 
-@inner
+@allocating
 def new_scratch(m: int, n: int) -> Scratch:
     """Return the arrays for n cables in m equations."""
     return Scratch(

@@ -10,7 +10,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import FORCE_X, FORCE_Z, LENGTH
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import inner
+from designer.kernel.compiling import allocating, inner
 from designer.kernel.linear import copy, fill
 from designer.kernel.table import (
     L_0,
@@ -49,7 +49,7 @@ _LEAST_START = 0.01
 """Pull that a cable starts with at least."""
 
 
-@inner
+@allocating
 def lanes_of(indices: IntArray, first: int, width: int = LANES) -> IntArray:
     """Return the poses of a block: from `first`, the last one repeated where there are no more."""
     lane = np.empty(width, dtype=np.int64)

@@ -22,7 +22,7 @@ from designer.kernel.answer import (
     write_pose,
 )
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, inner
+from designer.kernel.compiling import allocating, element, inner
 from designer.kernel.least_pull import least_pull
 from designer.kernel.table import (
     CHORD,
@@ -146,7 +146,7 @@ class Ask(NamedTuple):
     f_s: float
 
 
-@inner
+@allocating
 def new_pose(situation: Situation, figures: CableFigures) -> Pose:
     """Return the arrays of a pose."""
     cables = np.zeros((_ROWS, situation.attachments.shape[0]))

@@ -33,7 +33,7 @@ from designer.kernel.answer import (
     Answers,
 )
 from designer.kernel.calling import CableFigures, Situation
-from designer.kernel.compiling import element, inner, kernel
+from designer.kernel.compiling import allocating, element, inner, kernel
 from designer.kernel.feasible import (
     FAILED,
     MOST_PARTS,
@@ -152,38 +152,60 @@ def solve_redundant_range(
     bows_out = figures.pulley_radius > 0.0 and figures.vertical[2] < 1.0
     parts, bodies = new_parts(m, n, 3 if bows_out else 1)
     for at in range(start, stop):
-        place(pose, situation, figures, at)
-        out.wrench[at] = np.nan
-        out.leaving[at] = np.nan
-        straight_c, spans = massless(pose, lp)
-        straight_s = float(lp.z[n])
-        limit_sag(pose)
-        ask = asked(pose, inverse_weight[at if inverse_weight.size > 1 else 0])
-        verdict = NOT_CONVERGED
-        is_near = near.shape[0] > 0 and near[at, n] > 0.0
-        for turn in range(0 if is_near else 2, 3 if spans else 0):
-            s = straight_s
-            if turn < 2:
-                borne = near[at, n] * pose.scale[SIZE] / pose.scale[FORCE]
-                s = _pull_as(pose, ask, near[at], borne)
-            if turn == 0:
-                s, gap = climb(pose, ask, s, KEPT_PULLS[1], PATIENCE, scratch)
-            else:
-                s, gap = _walk(pose, lp, ask, s, is_near=turn == 1)
-            if gap <= OPTIMAL_WITHIN:
-                verdict = _store(out, at, pose, ask, s, gap, straight_c)
-            if verdict == SOLVED:
-                break
-        if verdict != SOLVED:
-            verdict = _decide(pose, parts, bodies, ask, scratch, straight_c, out, at)
-        if verdict != SOLVED:
-            out.cables[at] = np.nan
-            out.poses[at] = np.nan
-            write_massless(out, at, pose, straight_c)
-        out.is_best[at] = False
-        if verdict == SOLVED and proves_best and ask.c_s > 0.0:
-            out.is_best[at] = _is_best(pose, parts, bodies, scratch, straight_c, out, at)
-        out.verdict[at] = verdict
+        _solve(
+            at, situation, figures, inverse_weight, near, proves_best,
+            pose, lp, scratch, parts, bodies, out,
+        )  # fmt: skip
+
+
+@element
+def _solve(
+    at: int,
+    situation: Situation,
+    figures: CableFigures,
+    inverse_weight: FloatArray,
+    near: FloatArray,
+    proves_best: bool,
+    pose: Pose,
+    lp: Programme,
+    scratch: Scratch,
+    parts: Parts,
+    bodies: Programme,
+    out: Answers,
+) -> None:
+    """Solve a pose: near what is known, from straight cables, or where a proof leaves it open."""
+    place(pose, situation, figures, at)
+    out.wrench[at] = np.nan
+    out.leaving[at] = np.nan
+    straight_c, spans = massless(pose, lp)
+    straight_s = float(lp.z[-1])
+    limit_sag(pose)
+    ask = asked(pose, inverse_weight[at if inverse_weight.size > 1 else 0])
+    verdict = NOT_CONVERGED
+    is_near = near.shape[0] > 0 and near[at, -1] > 0.0
+    for turn in range(0 if is_near else 2, 3 if spans else 0):
+        s = straight_s
+        if turn < 2:
+            borne = near[at, -1] * pose.scale[SIZE] / pose.scale[FORCE]
+            s = _pull_as(pose, ask, near[at], borne)
+        if turn == 0:
+            s, gap = climb(pose, ask, s, KEPT_PULLS[1], PATIENCE, scratch)
+        else:
+            s, gap = _walk(pose, lp, ask, s, is_near=turn == 1)
+        if gap <= OPTIMAL_WITHIN:
+            verdict = _store(out, at, pose, ask, s, gap, straight_c)
+        if verdict == SOLVED:
+            break
+    if verdict != SOLVED:
+        verdict = _decide(pose, parts, bodies, ask, scratch, straight_c, out, at)
+    if verdict != SOLVED:
+        out.cables[at] = np.nan
+        out.poses[at] = np.nan
+        write_massless(out, at, pose, straight_c)
+    out.is_best[at] = False
+    if verdict == SOLVED and proves_best and ask.c_s > 0.0:
+        out.is_best[at] = _is_best(pose, parts, bodies, scratch, straight_c, out, at)
+    out.verdict[at] = verdict
 
 
 @inner
@@ -282,7 +304,7 @@ def _pull_as(pose: Pose, ask: Ask, pulls: FloatArray, scaled_c: float) -> float:
     return scaled_c if ask.c_s > 0.0 else s
 
 
-@inner
+@allocating
 def _is_best(
     pose: Pose,
     parts: Parts,

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.kernel.compiling import element, inner
+from designer.kernel.compiling import allocating, element
 
 OPTIMAL, INFEASIBLE, STALLED = range(3)
 
@@ -65,7 +65,7 @@ class Programme(NamedTuple):
     dual: FloatArray
 
 
-@inner
+@allocating
 def new_programme(m: int, n: int) -> Programme:
     """Return the arrays for n unknowns in m equations."""
     return Programme(

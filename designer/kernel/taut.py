@@ -103,6 +103,7 @@ def _close(row: FloatArray) -> None:
         row[_LOW, j] = 0.0
         row[_HIGH, j] = 1.0 / (row[KAPPA, j] * p)
     for _ in range(_MOST_TURNS):
+        rests = True
         for j in range(LANES):
             length = row[L, j]
             F, _F_p, F_l, _v, _v_p, _v_l, _t, _t_p, _t_l = unit_cable(
@@ -117,6 +118,6 @@ def _close(row: FloatArray) -> None:
             row[_LOW, j] = low
             row[_HIGH, j] = high
             row[L, j] = new
-            row[_STEP, j] = step if step > _SMALL_STEP else 0.0  # a lane of NaN rests as well
-        if np.max(row[_STEP]) == 0.0:
+            rests = rests and not step > _SMALL_STEP  # a lane of NaN rests as well
+        if rests:
             break

@@ -31,7 +31,9 @@ _STEEPEST = 3.0  # of δ: no cable more than about three times as long as its ho
 _BALANCED = 1e-9
 _NO_CABLE = 1e-6
 _NEWTONS = 30
-_SAG_OF_STRETCH = 0.15  # share of the sag, for a cable that its own weight would stretch to double
+_SAG_OF_STRETCH = (
+    0.3  # over the sag: what is left out of a cable that its weight stretches to double
+)
 _LARGEST_STRAIN = 0.5  # beyond, a cable counts as broken
 _MOST_TURNS = 80
 _PATIENCE = 15
@@ -143,7 +145,7 @@ class Problem:
         Hardly less, as the tables of the compiled solvers have it for what cables stretch.
         """
         EA = 1.0 / self.kappa
-        most = sag * (1.0 - _SAG_OF_STRETCH * self.kappa * self.L)
+        most = sag * (1.0 - _SAG_OF_STRETCH * sag * self.kappa * self.L)
         low, high = self.X / (2 * _STEEPEST), 1e3 * self.L
         for _ in range(100):
             h = np.sqrt(low * high)

@@ -57,7 +57,7 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.kernel.compiling import inner, kernel
+from designer.kernel.compiling import allocating, inner, kernel
 from designer.kernel.linear import copy, solve_small
 from designer.kernel.unit_cable import unit_cable
 from designer.proof.enclosure.cable import bound_sag, enclose, rough_length
@@ -153,7 +153,7 @@ class Work(NamedTuple):
     solution: FloatArray  # (m,)
 
 
-@inner
+@allocating
 def new_work(n: int, m: int, k: int) -> Work:
     """Return the arrays for n cables, m balanced directions and k coordinates."""
     return Work(
@@ -515,19 +515,28 @@ def bound_range(start: int, stop: int, scene: Scene, boxes: Boxes, out: FloatArr
     n, k = boxes.follow.shape[1], boxes.half.shape[1]
     work = new_work(n, scene.rows.size, k)
     for at in range(start, stop):
-        out[at] = 0.0
-        out[at, BOUND], out[at, ESTIMATE], out[at, SPARE] = np.inf, np.nan, np.nan
-        out[at, CUT] = np.argmax(boxes.half[at])
-        if is_three(scene, boxes, at):
-            _place(scene, boxes, at, 1.0, work)
-            out[at, BOUND] = up(bound_three(scene, boxes, at, work) / scene.strength)
-            if not scene.level < out[at, BOUND] < _NEAR * scene.level:
-                continue
-        if not _prepare(scene, boxes, at, work):
-            continue
-        if _exists(scene, boxes, at, work):
-            bound_tension(scene, boxes, at, work, out[at])
-        _choose_cut(boxes, at, work, out[at])
+        _bound(scene, boxes, at, work, out[at])
+
+
+@inner
+def _bound(scene: Scene, boxes: Boxes, at: int, work: Work, told: FloatArray) -> None:
+    """Fill what is told of a box."""
+    told[:] = 0.0
+    told[BOUND], told[ESTIMATE], told[SPARE] = np.inf, np.nan, np.nan
+    widest = 0
+    for d in range(boxes.half.shape[1]):
+        widest = d if boxes.half[at, d] > boxes.half[at, widest] else widest
+    told[CUT] = widest
+    if is_three(scene, boxes, at):
+        _place(scene, boxes, at, 1.0, work)
+        told[BOUND] = up(bound_three(scene, boxes, at, work) / scene.strength)
+        if not scene.level < told[BOUND] < _NEAR * scene.level:
+            return
+    if not _prepare(scene, boxes, at, work):
+        return
+    if _exists(scene, boxes, at, work):
+        bound_tension(scene, boxes, at, work, told)
+    _choose_cut(boxes, at, work, told)
 
 
 @inner
@@ -747,7 +756,7 @@ def _exists(scene: Scene, boxes: Boxes, at: int, work: Work) -> bool:
         if not _bend(scene, boxes, at, 1.0, work):
             return False
         _slopes(scene, boxes, at, 1.0, work)
-        is_inside = True
+        is_inside, largest = True, 0.0
         for j in range(m):
             total = work.start[j]
             for d in range(k):
@@ -756,9 +765,10 @@ def _exists(scene: Scene, boxes: Boxes, at: int, work: Work) -> bool:
                 total = up(total + up(size(get(work.of_u[j, e])) * work.U[e]))
             work.trial[j] = total
             is_inside = is_inside and total <= work.U[j]
+            largest = max(largest, total) + 0.0 * total  # a sum where NaN has to get through
         if is_inside:
             return True
-        if not np.max(work.trial) < 1e300:
+        if not largest < 1e300:
             return False
         for j in range(m):
             if turn > 0 and work.trial[j] > _HOPELESS * work.U[j]:
