@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -36,9 +37,9 @@ from designer.workspace.clearance import smallest_clearance
 from designer.workspace.demand import (
     at_worst_orientation,
     demand_of,
+    diameter_demand,
     is_counted,
     is_left_out,
-    size_worst,
 )
 from designer.workspace.sweep import WorkspaceMap, columns
 
@@ -119,10 +120,10 @@ def field_at(study: Study, position_m: FloatArray) -> RegionField:
     flat, axes = position_m.reshape(-1, 3), position_m.shape[:-1]
     if workspace.orientations.count == 1:
         return field_of(study, workspace.space.places(flat).reshape(*axes, -1))
-    step = max(CHUNK // workspace.orientations.count, 1)
+    demand = partial(diameter_demand, study.robot, study.material, workspace.hangs_below)
     worst = [
-        size_worst(study.robot, workspace, flat[at : at + step], study.material)[0]
-        for at in range(0, len(flat), step)
+        at_worst_orientation(workspace.space, flat[at : at + CHUNK], demand)
+        for at in range(0, len(flat), CHUNK)
     ]
     return field_of(study, np.concatenate(worst).reshape(*axes, -1))
 
@@ -528,13 +529,13 @@ def rope_maps(family: WorkspaceMaps, rope: GoverningRopes) -> WorkspaceMaps:
 
 def _over(rope: GoverningRopes, position_m: FloatArray) -> RegionField:
     """Return the field at positions (..., 3), each in the orientation that asks for the most."""
-    space, axes = rope.workspace.space, position_m.shape[:-1]
-    places = space.places(position_m.reshape(-1, 3))
-    if space.orientations.count > 1:
+
+    def demand(places: FloatArray) -> FloatArray:
         statics = rope.statics(places)
-        demand = demand_of(rope.utilisation(statics), statics, rope.workspace.hangs_below)
-        places = at_worst_orientation(space, places, demand)
-    return _at(rope, places.reshape(*axes, -1))
+        return demand_of(rope.utilisation(statics), statics, rope.workspace.hangs_below)
+
+    places = at_worst_orientation(rope.workspace.space, position_m.reshape(-1, 3), demand)
+    return _at(rope, places.reshape(*position_m.shape[:-1], -1))
 
 
 def _at(rope: GoverningRopes, place: FloatArray) -> RegionField:

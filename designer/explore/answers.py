@@ -364,13 +364,14 @@ def _solve_worst_orientation(
     question: Question, workspace: Workspace, positions_m: FloatArray, cable: Cable | Cables
 ) -> Statics:
     """Solve positions (n, 3) with a rope, each in the orientation of its largest utilisation."""
-    robot, space = question.robot, workspace.space
-    places = space.places(positions_m)
-    statics = solve_sagging(robot, Poses.at(places), cable)
-    if space.orientations.count == 1:
-        return statics
-    demand = demand_of(_utilisation(statics, cable).max(axis=-1), statics, workspace.hangs_below)
-    return solve_sagging(robot, Poses.at(at_worst_orientation(space, places, demand)), cable)
+
+    def demand(places: FloatArray) -> FloatArray:
+        statics = solve_sagging(question.robot, Poses.at(places), cable)
+        used = _utilisation(statics, cable).max(axis=-1)
+        return demand_of(used, statics, workspace.hangs_below)
+
+    places = at_worst_orientation(workspace.space, positions_m, demand)
+    return solve_sagging(question.robot, Poses.at(places), cable)
 
 
 def _utilisation(statics: Statics, cable: Cable | Cables | None) -> FloatArray:

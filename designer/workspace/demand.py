@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import chain
 
 import numpy as np
@@ -47,24 +48,24 @@ def size_worst(
 
     The places (n, n_coordinates) in that orientation [m, rad], and what is needed there.
     """
-    space = workspace.space
-    places = space.places(positions_m)
-    sizing = size_poses(robot, Poses.at(places), material)
-    if space.orientations.count == 1:
-        return places, sizing
-    demand = demand_of(sizing.diameter_m, sizing.statics, workspace.hangs_below)
-    places = at_worst_orientation(space, places, demand)
+    demand = partial(diameter_demand, robot, material, workspace.hangs_below)
+    places = at_worst_orientation(workspace.space, positions_m, demand)
     return places, size_poses(robot, Poses.at(places), material)
 
 
-def at_worst_orientation(space: Space, places: FloatArray, values: FloatArray) -> FloatArray:
-    """Return of each position the place whose orientation asks for the most.
+def at_worst_orientation(
+    space: Space, positions_m: FloatArray, demand: Callable[[FloatArray], FloatArray]
+) -> FloatArray:
+    """Return of positions (n, 3) the place (n, n_coordinates) in the orientation of most demand.
 
-    ``places`` (n, n_coordinates) are those of `Space.places`, ``values`` (n,) is their demand.
+    Where nothing is enough in an orientation, no other one is tried.
     """
-    count = space.orientations.count
-    worst = values.reshape(-1, count).argmax(axis=1)
-    return np.asarray(places[np.arange(len(worst)) * count + worst])
+    places, count = space.places(positions_m), space.orientations.count
+    values, rows = np.full((len(positions_m), count), -np.inf), np.arange(len(positions_m))
+    for k in range(count if count > 1 else 0):
+        values[rows, k] = demand(places[rows * count + k])
+        rows = rows[~np.isposinf(values[rows, k])]
+    return np.asarray(places[np.arange(len(positions_m)) * count + values.argmax(axis=1)])
 
 
 def diameter_demand(
