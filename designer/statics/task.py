@@ -105,8 +105,7 @@ def solve_task(
         # Most are proved to be impossible before the solver of taut cables need be compiled.
         some, part = flat.part(at), task.part(at)
         again, its_run = _solve_over_pulleys(robot, some, part, decides=True)
-        in_plane = robot.cable_load_direction is None
-        _judge_unsolved(robot, some, again, part, is_taut=in_plane)
+        _judge_unsolved(robot, some, again, part, is_taut=True)
         _replace(solution, run, at, again, its_run)
     if robot.pulley_radius_m == 0.0:
         return solution, run
