@@ -108,7 +108,7 @@ _LEAST_SHARE = 0.05
 _NARROWEST = 1.0 + 1e-9
 """Ratio of the ends of a range that is not cut again."""
 _THIN = 1e-9
-"""Thickness of a body, over the forces, that the linear programme is better off without."""
+"""Thickness of a body, over the forces, without which a programme that stalls is tried again."""
 _ITERATIONS = 8
 _HALVINGS = 30
 _TURNS = 60
@@ -487,7 +487,10 @@ def bound_part(pose: Pose, parts: Parts, part: int, lp: Programme, ask: Ask) -> 
     for side in range(2):
         if side == 1 and most <= largest_c:  # then the point that bears most is one of the part
             break
-        status, borne = _bear(pose, parts, lines, lp, 1.0 - 2.0 * side, force, side)
+        sign = 1.0 - 2.0 * side
+        status, borne = _bear(pose, parts, lines, lp, sign, force, side, 0.0)
+        if status == FAILED:
+            status, borne = _bear(pose, parts, lines, lp, sign, force, side, _THIN)
         misses = status == REFUSED or (borne < least_c if side == 0 else -borne > largest_c)
         if misses and _is_apart(pose, parts, lines, least_c, largest_c, force):
             return REFUSED, 0.0
@@ -555,11 +558,13 @@ def _bear(
     sign: float,
     force: float,
     row: int,
+    thin: float,
 ) -> tuple[int, float]:
     """Bear as much of the load as the bodies can, or with sign -1 of its opposite.
 
-    Returns that, over the force scale; refused if they have no point at all, failed if the linear
-    programme ends otherwise. The multipliers go into the wrench.
+    Bodies that are ``thin`` count as none. Returns that, over the force scale; refused if they have
+    no point at all, failed if the linear programme ends otherwise. The multipliers go into the
+    wrench.
     """
     c, table = pose.cables, lp.table
     m, n, curves = lp.basis.size, c.shape[1], parts.lifts.shape[1]
@@ -578,7 +583,7 @@ def _bear(
             for q in range(curves):
                 rows, direction = _CURVE_ROWS * q, c[_DIRECTIONS[q] + at, i]
                 own += direction * lines[SLOPE + rows, i]
-                is_thin = lp.room[n * (1 + q) + i] < _THIN
+                is_thin = lp.room[n * (1 + q) + i] < thin
                 unit = 0.0 if is_thin else _unit(pose, i, q, force)
                 table[k, n * (1 + q) + i] = direction * unit * c[SHARE, i] / force
                 rest -= (
