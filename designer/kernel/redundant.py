@@ -158,7 +158,7 @@ def solve_redundant_range(
         )  # fmt: skip
 
 
-@element
+@inner
 def _solve(
     at: int,
     situation: Situation,
