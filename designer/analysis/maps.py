@@ -118,8 +118,6 @@ def field_at(study: Study, position_m: FloatArray) -> RegionField:
     if workspace is None:
         return field_of(study, position_m)
     flat, axes = position_m.reshape(-1, 3), position_m.shape[:-1]
-    if workspace.orientations.count == 1:
-        return field_of(study, workspace.space.places(flat).reshape(*axes, -1))
     demand = partial(diameter_demand, study.robot, study.material, workspace.hangs_below)
     worst = [
         at_worst_orientation(workspace.space, flat[at : at + CHUNK], demand)

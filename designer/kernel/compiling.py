@@ -70,8 +70,8 @@ _MAKES_ARRAYS = {
     "no_cpython_wrapper": True,
     "pipeline_class": _InnerCompiler,
 }
-# What is handed to them outlives the call, so no references are counted: that is a seventh of what
-# compiling takes, and a fourth of the time of a pose. Numba refuses those that make an array.
+# What is handed to them outlives the call, so no references are counted: that is a sixth of what
+# compiling takes, and a fifth of the time of a pose. Numba refuses those that make an array.
 _CALLED_BY_KERNELS = {**_MAKES_ARRAYS, "_nrt": False}
 
 

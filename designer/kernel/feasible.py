@@ -433,7 +433,6 @@ def _enclose(pose: Pose, parts: Parts, lines: FloatArray, i: int, low: float, hi
             nodes[2, j] = (lift_1 - lift_0) / width
             nodes[3, j], nodes[4, j] = along, (along_1 - along_0) / width
             nodes[5, j], nodes[6, j] = aside, (aside_1 - aside_0) / width
-    lines[LOW, i], lines[HIGH, i] = low, high
     thick = 0.0
     for q in range(curves):
         v, slope, rows = nodes[1 + 2 * q], nodes[2 + 2 * q], _CURVE_ROWS * q
@@ -453,7 +452,9 @@ def _enclose(pose: Pose, parts: Parts, lines: FloatArray, i: int, low: float, hi
         lines[REST + rows, i], lines[SLOPE + rows, i] = v[0] - k * low, k
         lines[BELOW + rows, i], lines[ABOVE + rows, i] = below, above
         thick += above - below
-    return bool(thick < np.inf)
+    is_told = thick < np.inf
+    lines[LOW, i], lines[HIGH, i] = low if is_told else np.nan, high  # else not to be kept
+    return bool(is_told)
 
 
 @inner

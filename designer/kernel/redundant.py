@@ -126,6 +126,7 @@ _LIGHTER = 1.0 + 1e-5
 """Of the inverse weight: what a better answer has at least; half of it in diameter."""
 _MOST_BETTER = 8
 _MOST_PARTS_OF_PROOF = 5_000
+"""Parts that are looked at to prove that nothing lighter holds, each time that something does."""
 
 
 @kernel
@@ -182,6 +183,7 @@ def _solve(
     limit_sag(pose)
     ask = asked(pose, inverse_weight[at if inverse_weight.size > 1 else 0])
     verdict = NOT_CONVERGED
+    # From what is known to be near by a climb, which stays there, else by steps; or from straight.
     is_near = near.shape[0] > 0 and near[at, -1] > 0.0
     for turn in range(0 if is_near else 2, 3 if spans else 0):
         s = straight_s

@@ -27,8 +27,8 @@ from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
 LENGTH, EXIT_TENSION, DISTANCE = range(3)
 """Last axis of the results."""
 
-# Rows of a cable beside those of the table: bracket of the length, largest relative step.
-_LOW, _HIGH, _STEP = range(LANE_ROWS, LANE_ROWS + 3)
+# Rows of a cable beside those of the table: bracket of the length.
+_LOW, _HIGH = range(LANE_ROWS, LANE_ROWS + 2)
 
 _MOST_TURNS = 60
 _SMALL_STEP = 1e-8
@@ -52,7 +52,7 @@ def solve_taut_poses(
         length and tension are NaN for a pull below `PULL_FLOOR`, which is no taut cable at all.
     """
     count, n, m = situation.positions.shape[0], situation.attachments.shape[0], situation.rows.size
-    cables = np.empty((n, LANE_ROWS + 3, LANES))
+    cables = np.empty((n, LANE_ROWS + 2, LANES))
     A = np.empty((m, n + 2, LANES))
     normal = np.empty((n + 1, n + 1, LANES))
     poses = np.empty((POSE_ROWS, LANES))

@@ -122,12 +122,12 @@ def _solve_over_pulleys(
 
     ones = np.ones(robot.n_cables)
     pulleys_m = upright_exit_points_m(robot) if robot.pulley_radius_m > 0.0 else None
-    near = np.full((len(flat.position_m), robot.n_cables + 1), np.nan)
+    # Of several equilibria it is to stay with one, or the tangent points swing between them.
+    follows = turns > PATIENCE
+    near = np.full((len(flat.position_m) if follows else 0, robot.n_cables + 1), np.nan)
     turn = count()
 
     def solve(run: PulleyRun) -> tuple[Solution, FloatArray, float]:
-        # Of several equilibria it is to stay with one, or the tangent points swing between them.
-        stays = next(turn) >= PATIENCE
         solution = solve_batch(
             robot,
             task.situation.starting_at(run.exit_points_m),
@@ -137,20 +137,22 @@ def _solve_over_pulleys(
             task.inverse_weight_m_per_N,
             sag_max=task.sag_max,
             pulleys_m=pulleys_m,
-            near=near if stays else None,
+            near=near if next(turn) >= PATIENCE else None,
             **wishes,
         )
         if robot.pulley_radius_m == 0.0:  # no cable leaves at an angle that matters
             return solution, np.empty(0), 0.0
-        across = cable_geometry(robot, flat, run.exit_points_m).horizontal_distance_m
-        with np.errstate(invalid="ignore", divide="ignore"):  # forces at infinite section
+        with np.errstate(invalid="ignore"):  # forces are infinite at infinite section
             weight = solution.weight_N_per_m[:, None] * task.relative_weights
             downward = weight * solution.length_m - solution.force_z_N
-            pulls = solution.force_x_N / (weight * across)
         slope_rad = np.arctan2(downward, solution.force_x_N)
         is_solved = (solution.verdict == Verdict.SOLVED)[:, None]
-        answer = np.hstack([pulls, 1.0 / solution.weight_N_per_m[:, None]])
-        np.copyto(near, answer, where=is_solved)
+        if follows:
+            across = cable_geometry(robot, flat, run.exit_points_m).horizontal_distance_m
+            with np.errstate(invalid="ignore", divide="ignore"):
+                pulls = solution.force_x_N / (weight * across)
+            answer = np.hstack([pulls, 1.0 / solution.weight_N_per_m[:, None]])
+            np.copyto(near, answer, where=is_solved)
         return solution, np.where(is_solved, slope_rad, solution.leaving_rad), 0.0
 
     solution, run, gap_rad = over_pulleys(robot, flat, solve, turns)

@@ -31,9 +31,9 @@ _STEEPEST = 3.0  # of δ: no cable more than about three times as long as its ho
 _BALANCED = 1e-9
 _NO_CABLE = 1e-6
 _NEWTONS = 30
-_SAG_OF_STRETCH = (
-    0.3  # over the sag: what is left out of a cable that its weight stretches to double
-)
+# Share of the sag that the tables of least pulls leave out, over the sag and over the strain that
+# the cable's own weight would cause.
+_SAG_OF_STRETCH = 0.3
 _LARGEST_STRAIN = 0.5  # beyond, a cable counts as broken
 _MOST_TURNS = 80
 _PATIENCE = 15
